@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::effects::{
-    Action, ActsOn, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, listed_effect,
+    Action, EffectTargets, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, listed_effect,
 };
 use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
@@ -24,8 +24,8 @@ impl Effect for CubicByHand {
         None
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::MOMENT
+    fn acts_on(&self) -> EffectTargets {
+        EffectTargets::MOMENT
     }
 }
 

@@ -17,7 +17,7 @@ const ERROR: &str = "error: ";
 #[derive(Debug)]
 pub struct Failure {
     /// Kind of failure: wrong input, failed work, or a request to stop.
-    pub blame: Blame,
+    pub kind: FailureKind,
     /// Whole message, without the word "error" in front.
     pub message: String,
     /// Parts of the message, for programs.
@@ -46,7 +46,8 @@ pub struct FailureParts {
 /// Kind of failure, which determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Blame {
+#[schemars(rename = "Blame")]
+pub enum FailureKind {
     /// The input is wrong: usage, scenario or record.
     Input,
     /// The work could not be done: a full disk, a folder that cannot be written.
@@ -56,31 +57,31 @@ pub enum Blame {
 }
 
 impl Failure {
-    fn new(blame: Blame, message: String, parts: FailureParts) -> Self {
-        Self { blame, message, parts: Box::new(parts) }
+    fn new(kind: FailureKind, message: String, parts: FailureParts) -> Self {
+        Self { kind, message, parts: Box::new(parts) }
     }
 
     /// Failure of wrong input.
     pub fn input(message: impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self::new(Blame::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
+        Self::new(FailureKind::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
     }
 
     /// Failure of wrong input in a file of this name.
     pub fn in_file(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
         let (file, problem) = (file.as_ref().display().to_string(), problem.to_string());
         let message = format!("{file}: {problem}");
-        Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
+        Self::new(FailureKind::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
     }
 
     /// Failure of the execution on valid input, such as a full disk; error code `work`.
     pub fn execution(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
+        Self { kind: FailureKind::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
     }
 
     /// Failure of a stop on request.
     pub fn interrupted(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
+        Self { kind: FailureKind::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
     }
 
     /// Failure with an error code.
@@ -111,7 +112,7 @@ impl Failure {
             help: Some(advice.to_string()),
             file: Some(name),
         };
-        Self::new(Blame::Input, shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned(), parts)
+        Self::new(FailureKind::Input, shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned(), parts)
     }
 }
 
@@ -206,7 +207,7 @@ mod tests {
         assert_eq!((about.parts.file.as_deref(), about.parts.problem.as_str()), (Some("b.csv"), "it is empty"));
         assert_eq!(about.message, "b.csv: it is empty");
         let io = Err::<(), _>(std::io::Error::other("full")).on("write", Path::new("c")).expect_err("it failed");
-        assert_eq!((io.blame, io.parts.code, io.parts.file.as_deref()), (Blame::Work, ErrorCode::Work, Some("c")));
+        assert_eq!((io.kind, io.parts.code, io.parts.file.as_deref()), (FailureKind::Work, ErrorCode::Work, Some("c")));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Identified ship of an estimate or a trace, for predictions: structures, noise, steering gear, valid range, hulls.
 
-use document::identified_hull::{by_keys, matrix_rows};
+use document::identified_hull::{keyed_particulars, matrix_rows};
 use document::{
     HeadingNoise, IdentifiedCoefficient, IdentifiedEffect, IdentifiedGear, IdentifiedHull, IdentifiedShip,
     RandomYawMoment, ValidityRange, WeightedStructure,
@@ -124,7 +124,7 @@ impl<'a> RecordFacts<'a> {
             length_m: length,
             speed_m_s: speed,
             propeller_per_s: propeller,
-            particulars: by_keys(&expected.particulars.unwrap_or_default()),
+            particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
             covariance: matrix_rows(&hull.covariance),
             moment: RandomYawMoment {

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{DESIGN, MANIFEST};
+use crate::files::{DESIGN_FILE, MANIFEST_FILE};
 use crate::folder::ResultFolder;
 use crate::scenario::hex;
 use crate::scenario::{Prose, Scenario, identity};
@@ -111,7 +111,7 @@ impl Manifest {
 
     /// `true` if the study is finished: design, showcases and timings are stored next to its rows.
     pub fn is_finished(&self) -> bool {
-        self.sha256.contains_key(DESIGN)
+        self.sha256.contains_key(DESIGN_FILE)
     }
 
     /// Differences in design and seed, one sentence each; empty if both manifests have the same rows.
@@ -144,7 +144,7 @@ impl Manifest {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
         let text =
             toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
-        folder.write_synced(MANIFEST, REPEAT.to_owned() + &text)
+        folder.write_synced(MANIFEST_FILE, REPEAT.to_owned() + &text)
     }
 
     /// Manifest at a path; `None` without a file.

@@ -20,7 +20,7 @@ use crate::scenario::{Scenario, hex};
 use crate::shard::TrialId;
 
 /// File next to exported records: their scenario and seed.
-pub const TRIALS: &str = "trials.toml";
+pub const TRIALS_FILE: &str = "trials.toml";
 
 /// Contents of `trials.toml`. A scenario can be read from it as from a manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -99,11 +99,11 @@ pub fn read(
     let separator = [b';', b'\t'].into_iter().find(|candidate| head.as_bytes().contains(candidate)).unwrap_or(b',');
     let mut table =
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
-    let columns = AnswerColumns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
+    let columns = AnswerColumns::from_header(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
     if !columns.ignored.is_empty() {
         observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
-    let records = Records::of(scenario);
+    let records = Records::from_scenario(scenario);
     let mut lines: HashMap<(Option<String>, TrialNumber), u64> = HashMap::new();
     let mut answers: IndexMap<Option<String>, HashMap<TrialNumber, _>> = IndexMap::new();
     let mut faults = Vec::new();
@@ -168,7 +168,7 @@ struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    fn of(scenario: &'a Scenario) -> Self {
+    fn from_scenario(scenario: &'a Scenario) -> Self {
         let name = |cell: usize| record_name(scenario, TrialId { cell, replicate: 0 });
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
@@ -217,7 +217,7 @@ struct AnswerColumns {
 }
 
 impl AnswerColumns {
-    fn of(head: &StringRecord) -> Result<Self, String> {
+    fn from_header(head: &StringRecord) -> Result<Self, String> {
         let mut places = HashMap::new();
         for (place, name) in head.iter().enumerate() {
             // Of several columns with one name the first is used.
@@ -323,7 +323,7 @@ mod tests {
     fn every_record_is_known_by_its_name() {
         for (cells, replicates) in [("", 1), ("", 12), (TWO_CELLS, 1), (TWO_CELLS, 1000)] {
             let scenario = zig_zag(replicates, cells);
-            let records = Records::of(&scenario);
+            let records = Records::from_scenario(&scenario);
             for task in (0..scenario.cells.len())
                 .flat_map(|cell| [0, replicates - 1].map(|replicate| TrialId { cell, replicate }))
             {

@@ -162,7 +162,7 @@ mod tests {
         for (cells, rule) in [(2, ""), (7, ""), (1000, ""), (1000, RULE)] {
             let scenario = swept(cells, 1_000_000_000 / cells, rule);
             let parts: Vec<Range<u64>> =
-                (1..=SHARDS).map(|number| shard_blocks(&scenario, Shard { number, of: SHARDS })).collect();
+                (1..=SHARDS).map(|number| shard_blocks(&scenario, Shard { number, count: SHARDS })).collect();
             assert!(parts[0].start == 0 && parts.windows(2).all(|pair| pair[0].end == pair[1].start));
             assert_eq!(parts[parts.len() - 1].end, Block::count(&scenario));
             let trials: u64 = parts.iter().map(|part| max_trials(&scenario, part)).sum();

@@ -118,7 +118,7 @@ impl SharedTrials<'_> {
             Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
             // Estimates of outside estimators are looked up by trial.
-            Procedure::Answers(_) => None,
+            Procedure::OutsideEstimates(_) => None,
         };
         let row = |(trial, task): (usize, &TrialId)| {
             let separate = if shared.is_none() { self.response(procedure, &key(task)) } else { None };

@@ -70,7 +70,7 @@ pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         ShowcaseAnswer { entry, warnings: warnings.collect() }
     };
     let names = scenario.method_names();
-    let fits = FourierCurve::of(cell, &names, trial);
+    let fits = FourierCurve::from_cell(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::from_trial(trial).ok().map(|zigzag| ZigzagTrial {
@@ -132,7 +132,7 @@ struct FourierCurve<'a> {
 
 impl<'a> FourierCurve<'a> {
     /// Fourier curves of the methods of a cell, one per method id, since variants share the curve.
-    fn of(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
+    fn from_cell(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
             let Procedure::Identify { settings: Some(settings), .. } = &method.procedure else { return None };

@@ -85,7 +85,7 @@ pub struct TrialHull {
 }
 
 /// Particulars of a hull by their keys; missing ones are omitted.
-pub fn by_keys(particulars: &HullParticulars) -> BTreeMap<String, f64> {
+pub fn keyed_particulars(particulars: &HullParticulars) -> BTreeMap<String, f64> {
     PARTICULARS.iter().filter_map(|item| Some((item.key.to_owned(), item.get(particulars)?))).collect()
 }
 
@@ -170,7 +170,7 @@ impl IdentifiedHull {
         };
         Self {
             propeller_per_s: None,
-            particulars: by_keys(ship),
+            particulars: keyed_particulars(ship),
             coefficients: expected.iter().enumerate().map(coefficient).collect(),
             covariance: matrix_rows(&(common + &covariance)),
             trial_hull: Some(TrialHull {

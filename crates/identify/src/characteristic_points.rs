@@ -134,7 +134,7 @@ impl Identifier for CharacteristicPoints {
             .map(|samples| {
                 let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
                 if !self.settings.start_at_rest {
-                    points.drop_rest();
+                    points.remove_start_at_rest();
                 }
                 AnalysedTrial { samples, points }
             })
@@ -188,7 +188,7 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 
 fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
     let base_course_warning = |(trial, analysed): (&Trial, &AnalysedTrial)| {
-        let assumed = match analysed.points.base_from {
+        let assumed = match analysed.points.base_origin {
             BaseCourseOrigin::Given | BaseCourseOrigin::Approach => return None,
             BaseCourseOrigin::Zero => "heading 0",
             BaseCourseOrigin::Middle => "the middle of its headings",

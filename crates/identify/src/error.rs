@@ -48,10 +48,10 @@ pub enum IdentifyError {
         count: usize,
     },
     /// Fewer points of a kind than the method requires.
-    #[error("needs at least {needed} {what}, found {count}")]
+    #[error("needs at least {needed} {kind}, found {count}")]
     TooFewPoints {
         /// Kind of the points, e.g. "heading extrema".
-        what: &'static str,
+        kind: &'static str,
         /// Number of points required.
         needed: usize,
         /// Number of points in the records.
@@ -111,8 +111,8 @@ pub enum IdentifyError {
 impl From<LeastSquaresError> for IdentifyError {
     fn from(unsolvable: LeastSquaresError) -> Self {
         match unsolvable {
-            LeastSquaresError::TooFewRows { needed, found } => {
-                Self::TooFewPoints { what: "equations", needed, count: found }
+            LeastSquaresError::TooFewRows { columns, rows } => {
+                Self::TooFewPoints { kind: "equations", needed: columns, count: rows }
             }
             LeastSquaresError::Singular { condition, limit } => Self::Singular { condition, limit },
         }

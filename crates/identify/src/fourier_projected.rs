@@ -200,8 +200,8 @@ impl FourierProjected {
         let zigzag = TAU / zero_crossing_period(time, heading)?;
         let needed = (reach.min(MIN_REACH) * zigzag / choice.fundamental).ceil() as usize;
         if needed > MAX_HARMONICS {
-            let what = "harmonics to follow the many zig-zags of this record (give shorter records)";
-            return Err(IdentifyError::TooFewPoints { what, needed, count: MAX_HARMONICS });
+            let kind = "harmonics to follow the many zig-zags of this record (give shorter records)";
+            return Err(IdentifyError::TooFewPoints { kind, needed, count: MAX_HARMONICS });
         }
         // The series must at least reach the zig-zag frequency, with fewer coefficients than half the rows.
         let lowest = ((zigzag / choice.fundamental).ceil() as usize).max(1);

@@ -90,13 +90,13 @@ impl Identifier for IntegralLeastSquares {
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let samples = Samples::from_trials(trials, Trial::MIN_ROWS)?;
         let mut pieces = self.stretches(&samples)?;
-        let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
+        let solution = Solution::from_stretches(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
         if b.is_nan() || b <= 0.0 {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
-        let noise = ResidualNoise::of(&pieces, &solution);
+        let noise = ResidualNoise::from_stretches(&pieces, &solution);
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
@@ -145,7 +145,7 @@ impl IntegralLeastSquares {
         // Initial states, the shared parameters, and as many degrees of freedom for their error.
         let needed = 2 * SHARED_PARAMETERS + 2 * all.len().max(1);
         if count < needed {
-            return Err(IdentifyError::TooFewPoints { what: "headings in stretches without a gap", needed, count });
+            return Err(IdentifyError::TooFewPoints { kind: "headings in stretches without a gap", needed, count });
         }
         Ok(all)
     }

@@ -230,7 +230,7 @@ impl MotionRegression {
         }
         let count = equations.acceleration.len();
         if count < MIN_EQUATIONS {
-            return Err(IdentifyError::TooFewPoints { what: "windows without a gap", needed: MIN_EQUATIONS, count });
+            return Err(IdentifyError::TooFewPoints { kind: "windows without a gap", needed: MIN_EQUATIONS, count });
         }
         Ok(equations)
     }

@@ -111,7 +111,7 @@ const MAX_HALVINGS: usize = 12;
 const SHARED_PARAMETERS: usize = 3;
 
 /// Maximum condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
-pub(crate) const CONDITION_LIMIT: f64 = 1e6;
+pub(crate) const MAX_CONDITION: f64 = 1e6;
 
 /// Minimum number of headings of a trial.
 pub(crate) const MIN_ROWS: usize = 12;
@@ -275,7 +275,7 @@ impl RangeScan {
             Some((inverse_time, FitAtTime { gain, .. })) if gain <= 0.0 => {
                 IdentifyError::NotAShip { inverse_time, gain }
             }
-            _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
+            _ => IdentifyError::Singular { condition, limit: MAX_CONDITION },
         }
     }
 
@@ -297,7 +297,7 @@ impl RangeScan {
         let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trials()) as f64;
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) =
-            invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;
+            invert(&information, MAX_CONDITION).map_err(|condition| self.refusal(condition))?;
         let white = response_covariance(&(inverse * (rss / freedom)), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < MIN_GAIN_DEVIATIONS * gain_sd {
@@ -310,7 +310,7 @@ impl RangeScan {
         let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
+        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE_WARNING)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             let text = format!("T = {time} s lies at or beyond the limit of the search, ±{end} s");
@@ -337,7 +337,7 @@ impl RangeScan {
 }
 
 /// Warning text for a negative 1/T.
-pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
+pub(crate) const COURSE_UNSTABLE_WARNING: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from the covariance of (1/T, b, b δ_r).
 pub(crate) fn response_covariance(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {

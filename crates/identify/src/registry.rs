@@ -98,7 +98,7 @@ mod tests {
             let default = characteristic_points::Settings::default();
             Method::CharacteristicPoints(characteristic_points::Settings { half_width_s, condition_limit, ..default })
         };
-        for (settings, key, found) in [
+        for (settings, key, value) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
             (triples(10_001), "triples", "10001"),
             (triples(0), "triples", "0"),
@@ -120,7 +120,7 @@ mod tests {
             (Method::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
         ] {
             let error = settings.build().err().expect("it cannot end");
-            assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");
+            assert_eq!((error.key, error.value.as_str()), (key, value), "{error}");
         }
     }
 }

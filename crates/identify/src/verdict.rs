@@ -24,7 +24,7 @@ const MIN_EXPLAINED_SHARE: f64 = 0.9;
 pub const REFERENCE_METHODS: [&str; 2] = ["output-error", "maximum-likelihood"];
 
 /// Verdict over the estimates of some methods to some records; `None` if no method gives an estimate.
-pub fn from_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+pub fn from_estimates(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight =

@@ -35,7 +35,7 @@ fn fit() -> Result<(), Box<dyn Error>> {
         }
         answers.push((entry, estimate));
     }
-    match verdict::from_answers(&records, &answers) {
+    match verdict::from_estimates(&records, &answers) {
         None => println!("no method can identify this record"),
         Some(VerdictEntry { because: Some(because), .. }) => println!("no K and T can be taken, because {because}"),
         Some(verdict) => {

@@ -5,7 +5,7 @@ use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{DrawnShip, GOLDEN, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
+use crate::mixture::{DrawnShip, GOLDEN_RATIO_MINUS_ONE, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
 
 /// Structure and parameters of a drawn ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,7 +86,7 @@ impl EstimateSampler {
 
     /// Draw number `number`: equal for equal seeds, whatever else is drawn.
     pub fn sample(&self, number: u64) -> DrawnEstimate {
-        let share = (0.5 + number as f64 * GOLDEN).fract();
+        let share = (0.5 + number as f64 * GOLDEN_RATIO_MINUS_ONE).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));

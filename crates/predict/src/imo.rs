@@ -77,7 +77,7 @@ const IN_TEN: Limit = Limit {
 };
 
 /// Limits of the resolution. Source: MSC.137(76), 5.3.
-pub(crate) const LIMITS: [Limit; 6] = [
+pub(crate) const IMO_LIMITS: [Limit; 6] = [
     Limit {
         name: "initial turning",
         section: "initial turning",
@@ -135,7 +135,7 @@ pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, 
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
         |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
-    LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
+    IMO_LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
 /// Criteria of some predicted manoeuvres, for a ship of this length and speed.
@@ -155,7 +155,7 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Pre
     };
     let mut criteria = Vec::new();
     for prediction in predictions {
-        let limits = LIMITS.iter().filter(|limit| limit.is_answered_by(&prediction.kind));
+        let limits = IMO_LIMITS.iter().filter(|limit| limit.is_answered_by(&prediction.kind));
         criteria.extend(limits.filter_map(|limit| answer(prediction, limit)));
     }
     criteria

@@ -242,13 +242,13 @@ impl ShipMixture {
     /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
     pub(crate) fn drawn_structure(&self, number: u64) -> &StructureSampler {
         let step =
-            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
+            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN_RATIO_MINUS_ONE };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }
 
 /// Golden ratio minus one.
-pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+pub(crate) const GOLDEN_RATIO_MINUS_ONE: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
 pub(crate) fn structure_at_probability(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {
@@ -283,7 +283,7 @@ impl StructureSampler {
         {
             let needs = self.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
             if needs && ship.hulls.is_empty() {
-                return Err(PredictError::Needs { channel, option });
+                return Err(PredictError::MissingChannel { channel, option });
             }
         }
         Ok(self)
@@ -411,8 +411,8 @@ mod tests {
             constants: Vec::new(),
         });
         stored.members[0].parameters.push(-3.1);
-        assert_eq!(stored.rudder_logged_late(), Some(3.1));
-        assert_eq!(testing::identified_ship().rudder_logged_late(), None);
+        assert_eq!(stored.logged_rudder_delay(), Some(3.1));
+        assert_eq!(testing::identified_ship().logged_rudder_delay(), None);
         let kind = "zig-zag:10/10".parse().expect("known");
         let [own, late] = [testing::identified_ship(), stored].map(|stored| {
             testing::mixture(stored).predict(&kind, 40, false).expect("ships that come to the end of it").figures

@@ -137,14 +137,14 @@ impl Prediction {
 const TRACKS: u64 = 40;
 
 /// Error for a manoeuvre that too few drawn ships complete.
-pub(crate) fn too_few_error(what: impl ToString, made: usize, draws: usize) -> PredictError {
-    PredictError::Lost { kind: what.to_string(), made, draws }
+pub(crate) fn too_few_error(manoeuvre: impl ToString, made: usize, draws: usize) -> PredictError {
+    PredictError::TooFewCompleted { manoeuvre: manoeuvre.to_string(), completed: made, draws }
 }
 
 /// Fails if less than half of the drawn ships complete a manoeuvre.
-pub(crate) fn check_completed(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
+pub(crate) fn check_completed(manoeuvre: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
     if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 {
-        Err(too_few_error(what, made, draws))
+        Err(too_few_error(manoeuvre, made, draws))
     } else {
         Ok(())
     }
@@ -175,7 +175,7 @@ impl ShipMixture {
             heading: passage.heading,
             is_shown: number < TRACKS,
         };
-        let all = in_parallel(draws, |number| {
+        let all = parallel_draws(draws, |number| {
             let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
             Some((figures, series(number, passage)))
         });
@@ -210,7 +210,7 @@ impl ShipMixture {
         let curve = |number, sources: &[UncertaintySource]| {
             SteadyCurve::from_ship(&self.draw_ship(number, sources), kind.max_rudder(), self.timescale())
         };
-        let all: Vec<SteadyCurve> = in_parallel(draws, |number| curve(number, &UncertaintySource::ALL));
+        let all: Vec<SteadyCurve> = parallel_draws(draws, |number| curve(number, &UncertaintySource::ALL));
         let values: Vec<Option<Characteristics>> =
             all.iter().map(|curve| Some(curve.figures(kind.max_rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
@@ -235,7 +235,7 @@ impl ShipMixture {
 }
 
 /// Results of `draws` drawn ships, computed in parallel, in the order of their numbers.
-pub(crate) fn in_parallel<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+pub(crate) fn parallel_draws<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
@@ -247,7 +247,7 @@ fn predicted(
     draw: impl Fn(u64, &[UncertaintySource]) -> Option<Characteristics> + Sync + Send,
 ) -> IndexMap<String, PredictedFigure> {
     let alone =
-        |source: &UncertaintySource| in_parallel(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
+        |source: &UncertaintySource| parallel_draws(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
         let value = |draw: &Option<Characteristics>| draw.as_ref().and_then(|figures| *figures.get(name)?);

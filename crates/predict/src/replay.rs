@@ -18,7 +18,7 @@ use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{BandedCurve, check_completed, in_parallel, too_few_error};
+use crate::prediction::{BandedCurve, check_completed, parallel_draws, too_few_error};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
@@ -143,7 +143,7 @@ impl ShipMixture {
             Some((passage, headings))
         };
         let (made, headings): (Vec<SimulatedManoeuvre>, Vec<Vec<f64>>) =
-            in_parallel(draws, of_draw).into_iter().flatten().unzip();
+            parallel_draws(draws, of_draw).into_iter().flatten().unzip();
         check_completed(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
@@ -185,7 +185,7 @@ impl ShipMixture {
 
     /// Overshoots, times and period of a measured zig-zag, compared with its simulation.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
-        let Some(steered) = SteeredZigZag::of(measured, self.first().approach_yaw_rate_rad_s) else {
+        let Some(steered) = SteeredZigZag::from_measured(measured, self.first().approach_yaw_rate_rad_s) else {
             return Ok(ByName::new());
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
@@ -258,7 +258,7 @@ fn turns(
     };
     let drawn: Vec<Characteristics> = made.iter().enumerate().map(drawn_figures).collect();
     let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::without_uncertainty));
-    (figures, TurnTracks::of(&turn, &record, most_probable, made))
+    (figures, TurnTracks::from_ships(&turn, &record, most_probable, made))
 }
 
 #[cfg(test)]

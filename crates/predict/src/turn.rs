@@ -202,7 +202,7 @@ pub struct TurnTracks {
 
 impl TurnTracks {
     /// Tracks of a recorded turn; `None` without positions, and for a model without drift.
-    pub(crate) fn of(
+    pub(crate) fn from_ships(
         turn: &HeldTurn,
         record: &SimulatedManoeuvre,
         most_probable: &SimulatedManoeuvre,

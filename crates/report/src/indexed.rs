@@ -26,7 +26,7 @@ impl IndexedImage {
     ///
     /// In addition to the colours of large areas, the palette holds the first colour of each level, on the finest of
     /// 256, 128, …, 4 levels per channel that leaves few enough; all others become the nearest of these colours.
-    pub fn of(rgba: &[u8]) -> Self {
+    pub fn from_rgba(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
         let runs =
             || pixels.chunk_by(|pixel, next| pixel == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn few_colours_are_kept_as_they_are() {
-        let image = IndexedImage::of(&[9, 9, 9, 255, 255, 0, 0, 255, 255, 0, 0, 255]);
+        let image = IndexedImage::from_rgba(&[9, 9, 9, 255, 255, 0, 0, 255, 255, 0, 0, 255]);
         assert_eq!(image, IndexedImage { palette: vec![255, 0, 0, 9, 9, 9], pixels: vec![1, 0, 0] });
     }
 
@@ -77,7 +77,7 @@ mod tests {
         let ramp = (0..=u16::MAX).flat_map(|k| [(k >> 8) as u8, (k & 255) as u8, 77, 255]);
         let areas = [[201, 33, 77, 255], [201, 34, 77, 255]].map(|pixel| pixel.repeat(1000)).concat();
         let rgba: Vec<u8> = ramp.chain(areas).collect();
-        let IndexedImage { palette, pixels } = IndexedImage::of(&rgba);
+        let IndexedImage { palette, pixels } = IndexedImage::from_rgba(&rgba);
         assert!(
             palette.len() <= 3 * MAX_COLOURS && palette[..6] == [201, 33, 77, 201, 34, 77],
             "{}",

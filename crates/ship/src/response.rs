@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{ActsOn, BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling};
+use crate::effects::{EffectTargets, BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -34,7 +34,7 @@ pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
-    acts_on: ActsOn,
+    acts_on: EffectTargets,
 }
 
 impl Place {

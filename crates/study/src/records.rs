@@ -14,7 +14,7 @@ use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::identified_ship::RecordFacts;
-use campaign::outside_estimates::TRIALS;
+use campaign::outside_estimates::TRIALS_FILE;
 use campaign::scenario::name;
 
 /// File name extensions of records in a folder.
@@ -34,7 +34,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             continue;
         }
         // A folder of simulated records also holds a list and answers; only records have a file of true values.
-        let is_simulated = path.join(TRIALS).is_file();
+        let is_simulated = path.join(TRIALS_FILE).is_file();
         let is_record = |file: &PathBuf| {
             let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
             file.is_file()
@@ -237,7 +237,7 @@ pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
 }
 
 /// Message on a negative dead time, s: the rudder was logged late. It includes the remedy.
-pub fn rudder_logged_late(late: f64) -> String {
+pub fn late_rudder_message(late: f64) -> String {
     let late = ShortNumber::rounded(late, 2);
     format!(
         "the dead time is −{late} s, which no steering gear has: the rudder was logged {late} s late; write `late-s = {late}` under \

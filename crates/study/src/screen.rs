@@ -10,7 +10,7 @@ use report::Table;
 use report::printable::escaped;
 
 use crate::options::{CommonOptions, Format};
-use campaign::failure::{Blame, Failure};
+use campaign::failure::{FailureKind, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
@@ -117,11 +117,11 @@ pub fn escaped_lines(lines: &str) -> String {
 }
 
 /// Exit code of the program after a failure.
-pub fn exit_code(blame: Blame) -> u8 {
+pub fn exit_code(blame: FailureKind) -> u8 {
     match blame {
-        Blame::Work => 1,
-        Blame::Input => 2,
-        Blame::Interrupted => 130,
+        FailureKind::Work => 1,
+        FailureKind::Input => 2,
+        FailureKind::Interrupted => 130,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates in
 //! addition to the named effects.
 
-use ship::effects::{Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, RecordScales};
+use ship::effects::{Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Parameter, RecordScales};
 use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
 
@@ -146,8 +146,8 @@ impl Effect for Monomial {
         Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD_RAD))
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::MOMENT
+    fn acts_on(&self) -> EffectTargets {
+        EffectTargets::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {

@@ -13,7 +13,7 @@ use crate::record::{Columns, RejectedReading};
 use crate::wording::{counted, rounded_to_thousandth};
 
 /// Minimum rudder angle of an impossible reading, rad.
-pub(crate) const IMPOSSIBLE_RUDDER: f64 = 1.6;
+pub(crate) const MIN_IMPOSSIBLE_RUDDER_RAD: f64 = 1.6;
 
 /// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not a single reading.
 const MAX_RUDDER: f64 = 1.05;
@@ -82,8 +82,8 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
 /// Omits rows with an impossible rudder angle, if they are few.
 fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
-    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > IMPOSSIBLE_RUDDER).collect();
-    let largest = rudder.iter().map(|x| x.abs()).filter(|x| *x <= IMPOSSIBLE_RUDDER).fold(0.0, f64::max);
+    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > MIN_IMPOSSIBLE_RUDDER_RAD).collect();
+    let largest = rudder.iter().map(|x| x.abs()).filter(|x| *x <= MIN_IMPOSSIBLE_RUDDER_RAD).fold(0.0, f64::max);
     if wild.is_empty() || wild.len() as f64 > MAX_IMPOSSIBLE_SHARE * rudder.len() as f64 || largest > MAX_RUDDER {
         return None;
     }
@@ -140,7 +140,7 @@ impl Rhythm {
     ///
     /// A rudder of whole degrees that moves at a steady rate also changes in a rhythm, but with a different phase in
     /// every movement. Separate movements therefore must agree.
-    fn of(values: &[f64]) -> Option<Self> {
+    fn from_values(values: &[f64]) -> Option<Self> {
         let changed = |row: &usize| {
             let pair = [values[*row - 1], values[*row]];
             pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
@@ -194,7 +194,7 @@ pub(crate) fn interpolate_rows(time: &[f64], values: &mut [f64], from: usize, to
 fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
-    let rhythm = Rhythm::of(rudder)?;
+    let rhythm = Rhythm::from_values(rudder)?;
     let new: Vec<usize> = (0..rudder.len()).filter(|&row| rhythm.is_new(row)).collect();
     for pair in new.windows(2) {
         interpolate_rows(time, rudder, pair[0], pair[1]);
@@ -208,7 +208,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
 /// Sets the repetitions of a channel to missing.
 fn blank_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
-    let rhythm = Rhythm::of(values)?;
+    let rhythm = Rhythm::from_values(values)?;
     let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
     if left < crate::record::Trial::MIN_ROWS {
         return None;

@@ -132,7 +132,7 @@ pub struct OrderStep {
 }
 
 /// Change of heading of the initial turning test, rad.
-pub const INITIAL_TURN: f64 = 10.0 * DEGREE;
+pub const INITIAL_TURNING_CHANGE_RAD: f64 = 10.0 * DEGREE;
 
 /// Changes of heading in a Williamson turn, rad: to the first side until the rudder is reversed, then to the opposite
 /// side until it is put amidships.
@@ -202,7 +202,7 @@ impl Manoeuvre {
             }
             (Self::TurningCircle { .. }, _) => (Never, None, "recording.duration-s"),
             (Self::InitialTurning { side, .. }, _) => {
-                (Deviation { side: side.sign(), angle: INITIAL_TURN }, None, "manoeuvre")
+                (Deviation { side: side.sign(), angle: INITIAL_TURNING_CHANGE_RAD }, None, "manoeuvre")
             }
             (Self::PullOut { hold, .. }, 1) => (Time(*hold), Some(0.0), "manoeuvre.pull-out.hold-s"),
             (Self::PullOut { duration, .. }, _) => (Time(*duration), None, "manoeuvre.pull-out.duration-s"),

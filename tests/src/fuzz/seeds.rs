@@ -54,7 +54,7 @@ pub(super) fn cells() -> Vec<Vec<u8>> {
 }
 
 pub(super) fn manifest() -> Vec<Vec<u8>> {
-    stored(files::MANIFEST)
+    stored(files::MANIFEST_FILE)
 }
 
 /// Packed table and packed log of sentences.

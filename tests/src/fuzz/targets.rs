@@ -210,7 +210,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
 /// Target of a manifest, compared with another manifest and resolved as the scenario that it contains.
 pub fn manifest(data: &[u8]) -> bool {
     scratch(|folder| {
-        let path = folder.join(files::MANIFEST);
+        let path = folder.join(files::MANIFEST_FILE);
         std::fs::write(&path, data).expect("the scratch folder is writable");
         let manifest = match Manifest::read(&path) {
             Ok(manifest) => manifest.expect("it was just written"),

@@ -132,7 +132,7 @@ impl RowLayout {
                     Values::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
                 }
             },
-            ColumnSource::Axis(_, points) => points.of_cells(rows),
+            ColumnSource::Axis(_, points) => points.for_rows(rows),
             ColumnSource::Record(of, records) => record_names(of, records, rows),
             ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
@@ -165,7 +165,7 @@ impl RowLayout {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
                 // Axes and records follow from cell and replicate; other values belong to another design.
-                (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
+                (ColumnSource::Axis(_, points), values) if points.for_rows(&rows) == values => {}
                 (ColumnSource::Record(of, records), values) if record_names(of, records, &rows) == values => {}
                 (ColumnSource::Record(..), _) => return Err("a row names other records than its trial has".to_owned()),
                 (ColumnSource::Axis(name, _), _) => {
@@ -214,7 +214,7 @@ impl Values {
     }
 
     /// Values by row, from values by cell; `None` for a missing cell.
-    fn of_cells(&self, rows: &[StudyRow]) -> Self {
+    fn for_rows(&self, rows: &[StudyRow]) -> Self {
         fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {
             rows.iter().map(|row| values.get(row.cell as usize)?.clone()).collect()
         }

@@ -88,7 +88,7 @@ impl Scenario {
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
             let mut document = table_of(path, &text)?;
             let unknown_output = Presentation::remove_unknown(&mut document);
-            let scenario = Self::of_table(path, &manifest.name, text, &document, seed)?;
+            let scenario = Self::from_table(path, &manifest.name, text, &document, seed)?;
             return Ok(Self { unknown_output, ..scenario });
         }
         Self::parse(path, &name::study_name(path)?, text, seed)
@@ -97,13 +97,13 @@ impl Scenario {
     /// Resolves the text of a scenario; messages and relative paths refer to `path`.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
         let document = table_of(path, &text)?;
-        Self::of_table(path, name, text, &document, seed)
+        Self::from_table(path, name, text, &document, seed)
     }
 
     /// Resolves the table of a text.
-    fn of_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
+    fn from_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
-        let scenario = Self::of_document(document, name, folder).map_err(|fault| {
+        let scenario = Self::from_document(document, name, folder).map_err(|fault| {
             let span = locate::span(&text, &fault.key, fault.mark);
             Failure::in_text(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
@@ -117,7 +117,7 @@ impl Scenario {
     }
 
     /// Resolves a document; the caller sets identity and text.
-    fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
+    fn from_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         if document.is_empty() {
             return Err(KeyFault::name(
                 KeyPath::default(),
@@ -127,7 +127,7 @@ impl Scenario {
             ));
         }
         if document.contains_key(RECORDS) {
-            return Self::of_records(document, name, folder);
+            return Self::from_records(document, name, folder);
         }
         let wire: ScenarioWire = reader::read_document(document)?;
         let prose = Prose {
@@ -151,7 +151,7 @@ impl Scenario {
         let cells = combinations.iter().map(|points| cell::simulated_cell(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         wire.published.check()?;
-        let design = Self::of_design(name, prose, axes, cells, &methods)?;
+        let design = Self::from_design(name, prose, axes, cells, &methods)?;
         Ok(Self {
             seed: wire.seed,
             replicates: wire.replicates,
@@ -164,7 +164,7 @@ impl Scenario {
     }
 
     /// Resolves a document of measured records.
-    fn of_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
+    fn from_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         let wire: RecordStudyWire = reader::read_document(document)?;
         let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
         let prose = Prose { question, analysis, finding, output };
@@ -180,14 +180,14 @@ impl Scenario {
         let replicates = counts.max().unwrap_or(0);
         // Without any record there is no trial, which is reported in the run.
         checks::size(replicates.max(1), cells.len(), methods.len())?;
-        let design = Self::of_design(name, prose, axes, cells, &methods)?;
+        let design = Self::from_design(name, prose, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
 
     /// Scenario of cells and methods; the caller sets trials, seed, identity, text and optional parts.
     ///
     /// Fails if the presentation names cells, axes or methods that do not exist.
-    fn of_design(
+    fn from_design(
         name: &str,
         prose: Prose,
         axes: Vec<SweepAxis>,
@@ -249,7 +249,7 @@ impl Scenario {
     /// Fails for an invalid label, and for one already in use.
     pub fn with_outside_estimates(self, label: &str, answers: OutsideEstimates) -> Result<Self, Failure> {
         let content = format!("answers {}", answers.sha256());
-        self.with(label, Procedure::Answers(Arc::new(answers)), &content)
+        self.with(label, Procedure::OutsideEstimates(Arc::new(answers)), &content)
     }
 
     /// Scenario with a further method; `identity_text` enters the SHA-256 of the design.

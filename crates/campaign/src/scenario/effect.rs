@@ -8,7 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 use ship::Regressor;
-use ship::effects::{Effect, FileNumber, FileRole, Formula, meaning};
+use ship::effects::{Effect, ScenarioNumber, NumberConversion, Formula, meaning};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
@@ -47,8 +47,8 @@ static IDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     ids
 });
 
-impl From<FileNumber> for NumberKey {
-    fn from(FileNumber { key, meaning, default, .. }: FileNumber) -> Self {
+impl From<ScenarioNumber> for NumberKey {
+    fn from(ScenarioNumber { key, meaning, default, .. }: ScenarioNumber) -> Self {
         Self { key, meaning, is_required: default.is_none(), default }
     }
 }
@@ -240,13 +240,13 @@ struct EffectParameter {
 /// Parameters of an effect on a ship with 1/T `inverse_time`, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
     let keys = form.effect.in_file().unwrap_or_default();
-    let setting = |number: &FileNumber| {
+    let setting = |number: &ScenarioNumber| {
         let written = numbers.get(number.key).copied().or(number.default).unwrap_or(f64::NAN);
-        let unit = number.unit * if number.role == FileRole::OverT { inverse_time } else { 1.0 };
+        let unit = number.unit * if number.role == NumberConversion::OverT { inverse_time } else { 1.0 };
         EffectParameter { value: written * unit, key: number.key, written, unit }
     };
     let settings: Vec<EffectParameter> = keys.iter().map(setting).collect();
-    if let ([_, FileNumber { role: FileRole::Direction, .. }], [strength, from]) = (&keys[..], &settings[..]) {
+    if let ([_, ScenarioNumber { role: NumberConversion::Direction, .. }], [strength, from]) = (&keys[..], &settings[..]) {
         let twice = 2.0 * from.value;
         let component = |share: f64| match from.written.is_finite() {
             true => EffectParameter { value: strength.value * share, ..*strength },

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 use trial::Sidecar;
 use trial::file::{self, FileError};
-use trial::reader::RECORD;
+use trial::reader::RECORD_FILE;
 
 use crate::failure::{Failure, OnPath};
 use crate::scenario::part::ScenarioPart;
@@ -36,7 +36,7 @@ pub fn study_sha256(design: &Table, folder: &Path) -> Result<String, Failure> {
                     let record = folder.join(name);
                     let sidecar = Sidecar::existing_beside(&record);
                     for path in iter::once(record).chain(sidecar) {
-                        match file::open(&path, RECORD) {
+                        match file::open(&path, RECORD_FILE) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
                             // Refused by another check, or overridden in every cell.
                             Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}

@@ -37,7 +37,7 @@ pub enum Procedure {
     /// Finds what a first-order response lacks.
     Trace(::trace::Settings),
     /// Looks up the estimates of an outside estimator.
-    Answers(Arc<OutsideEstimates>),
+    OutsideEstimates(Arc<OutsideEstimates>),
     /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
 }
@@ -48,7 +48,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
-            Self::Answers(_) => outside_estimates::ID,
+            Self::OutsideEstimates(_) => outside_estimates::ID,
             Self::StraightOn => STRAIGHT_ON,
         }
     }
@@ -64,7 +64,7 @@ impl Procedure {
                 "a first-order response with the effects it lacks; it also reads speed, sway and wind, those of a \
                  measured validation record included"
             }
-            Self::Answers(_) => "answers of an outside estimator",
+            Self::OutsideEstimates(_) => "answers of an outside estimator",
             Self::StraightOn => "a ship that keeps her heading: the null model",
         }
     }
@@ -75,7 +75,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
             Self::Trace(_) | Self::StraightOn => None,
-            Self::Answers(answers) => Some(answers.estimate((key.cell, key.replicate))),
+            Self::OutsideEstimates(answers) => Some(answers.estimate((key.cell, key.replicate))),
         }
     }
 }

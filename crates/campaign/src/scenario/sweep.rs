@@ -177,7 +177,7 @@ impl AxisWire {
     /// Points as listed, or spread over a range.
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single =
-            |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
+            |key: &str, value: Value, value_place: KeyPath| SweepPoint::from_value(key, value, place.child("key"), value_place);
         let spread = |key: &str, values: Vec<f64>, how: &str| -> Vec<SweepPoint> {
             values.into_iter().map(|value| single(key, Value::Float(value), place.child(how))).collect()
         };
@@ -285,7 +285,7 @@ impl RangeWire {
 }
 
 impl SweepPoint {
-    fn of(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
+    fn from_value(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
         let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
         let label = match (&value, number) {
             (_, Some(number)) => trim(number),

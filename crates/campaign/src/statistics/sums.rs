@@ -4,7 +4,7 @@
 use std::iter::Sum;
 
 /// Number of batches.
-pub const BATCHES: usize = 256;
+pub const BATCH_COUNT: usize = 256;
 
 /// Sums over the values of one batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -29,7 +29,7 @@ impl Sum for BatchSums {
 
 /// Batch of a replicate.
 fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
-    let place = (replicate % BATCHES as u64) as usize;
+    let place = (replicate % BATCH_COUNT as u64) as usize;
     if batches.len() <= place {
         batches.resize(place + 1, BatchSums::default());
     }
@@ -139,7 +139,7 @@ mod tests {
         let mut sums = ErrorSums::default();
         (0..1000).for_each(|replicate| sums.add(replicate, -6.53 + 1e-9 * f64::from(u8::from(replicate % 2 == 0))));
         let total = total(sums.batches());
-        assert_eq!(sums.batches().len(), BATCHES);
+        assert_eq!(sums.batches().len(), BATCH_COUNT);
         let sd = sums.sd(&total).expect("enough");
         assert!((sd / 0.5e-9 - 1.0).abs() < 1e-3, "{sd}");
         assert!((sums.rms(&total).expect("some") - 6.53).abs() < 1e-8);

@@ -63,7 +63,7 @@ impl ConformalScaling {
     ///
     /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
     /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
-    pub fn from_others(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
+    pub fn from_calibration(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
             lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
         };
@@ -233,15 +233,15 @@ mod tests {
             lines.remove(0)
         };
         let (near, far) = (ship(1.0), ship(2.0));
-        let scaling = ConformalScaling::from_others(&[&near], &[&far]).expect("both are there");
+        let scaling = ConformalScaling::from_calibration(&[&near], &[&far]).expect("both are there");
         assert_eq!((scaling.factor, scaling.coverage), (2.0, [1.0, 1.0]));
         assert!((scaling.score[0] - 0.02).abs() < 1e-12 && (scaling.score[1] - 0.04).abs() < 1e-12);
-        let scaling = ConformalScaling::from_others(&[&far], &[&near]).expect("both are there");
+        let scaling = ConformalScaling::from_calibration(&[&far], &[&near]).expect("both are there");
         assert_eq!((scaling.factor, scaling.coverage), (1.0, [0.0, 0.0]));
         // Width 2 and 20 times 1, of 100.
         assert!((scaling.score[1] - 0.22).abs() < 1e-9);
-        assert_eq!(ConformalScaling::from_others(&[&near], &[]), None);
-        assert_eq!(ConformalScaling::from_others(&[&near], &[&ship(50.0)]), None);
+        assert_eq!(ConformalScaling::from_calibration(&[&near], &[]), None);
+        assert_eq!(ConformalScaling::from_calibration(&[&near], &[&ship(50.0)]), None);
     }
 
     /// The limit is 5 + L/(2V) = 15°.

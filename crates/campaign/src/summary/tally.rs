@@ -11,7 +11,7 @@ use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::scenario::MethodName;
-use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, wilson_share};
+use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, NORMAL_QUANTILE_95, wilson_share};
 
 /// Reference method, if a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
@@ -271,8 +271,8 @@ impl MethodTally {
     }
 
     fn detail(&self) -> MethodDetail {
-        let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::of(&index.sample.ordered()));
-        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::of(&self.cloud) }
+        let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::from_errors(&index.sample.ordered()));
+        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::from_pairs(&self.cloud) }
     }
 }
 
@@ -328,7 +328,7 @@ impl IndexSums {
         let (first, [sum, square]) = self.answers?;
         let count = self.answered as f64;
         let value = first + sum / count;
-        let half = Z95 * ((square - sum * sum / count).max(0.0) / (count - 1.0) / count).sqrt();
+        let half = NORMAL_QUANTILE_95 * ((square - sum * sum / count).max(0.0) / (count - 1.0) / count).sqrt();
         Some(Statistic { value, ci95: half.is_finite().then_some([value - half, value + half]) })
     }
 

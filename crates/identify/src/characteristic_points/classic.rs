@@ -74,7 +74,7 @@ pub(super) fn identify(
     let flat: Vec<Interval> = swings.into_iter().flatten().collect();
     let squares: f64 = rises.iter().map(|rise| rise.rate * rise.rate).sum();
     if rises.is_empty() {
-        return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, count: 0 });
+        return Err(IdentifyError::TooFewPoints { kind: "passages of the base course", needed: 1, count: 0 });
     }
     // The ratio of sums has less variance than the mean of ratios, because it weighs by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
@@ -92,7 +92,7 @@ fn all(points: &Points) -> SelectedPoints<'_> {
 fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyError> {
     let extrema = points.extrema();
     let still = extrema.get(..3).ok_or(IdentifyError::TooFewPoints {
-        what: "heading extrema",
+        kind: "heading extrema",
         needed: 3,
         count: extrema.len(),
     })?;
@@ -115,7 +115,7 @@ impl GainFit {
         let needed = if bias.is_some() { 1 } else { 2 };
         if count < needed {
             return Err(IdentifyError::TooFewPoints {
-                what: "swings between instants without yaw rate",
+                kind: "swings between instants without yaw rate",
                 needed,
                 count,
             });

@@ -59,7 +59,7 @@ pub struct Points {
     /// Base course, rad.
     pub base: f64,
     /// Origin of the base course.
-    pub base_from: BaseCourseOrigin,
+    pub base_origin: BaseCourseOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
 }
@@ -71,7 +71,7 @@ impl Points {
     }
 
     /// Leaves a start at rest out of the instants with r = 0.
-    pub fn drop_rest(&mut self) {
+    pub fn remove_start_at_rest(&mut self) {
         if std::mem::take(&mut self.from_rest) {
             self.zero_rate_points.remove(0);
         }
@@ -84,7 +84,7 @@ impl Points {
         let (lo, hi) = extremes(&samples.heading);
         let approach = approach(samples, base, [lo, hi]);
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        let (base, base_from) = match (base, &approach) {
+        let (base, base_origin) = match (base, &approach) {
             (Some(base), _) => (base, BaseCourseOrigin::Given),
             (None, Some(rows)) => (mean(rows.clone()), BaseCourseOrigin::Approach),
             // A zero between the quarter points of the headings may be the base course.
@@ -119,7 +119,7 @@ impl Points {
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
-        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_from, half_width }
+        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_origin, half_width }
     }
 }
 

@@ -81,7 +81,7 @@ impl NestedBases {
         let (rows, width) = (time.len(), 2 * harmonics + 1);
         if rows <= width {
             let (needed, count) = (width + 1, rows);
-            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
+            return Err(IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed, count });
         }
         let centre = 0.5 * (time[0] + time[rows - 1]);
         // Without harmonics there are no sine columns.
@@ -389,7 +389,7 @@ mod tests {
         let error = Basis::new(&time, 0.1, 8).expect_err("17 columns on 17 rows");
         assert_eq!(
             error,
-            IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed: 18, count: 17 }
+            IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed: 18, count: 17 }
         );
     }
 }

@@ -63,7 +63,7 @@ pub fn fit(
 ) -> Result<FittedSeries, IdentifyError> {
     let (needed, count) = (2 * harmonics + 2, time.len());
     if count < needed {
-        return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
+        return Err(IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed, count });
     }
     let choice = fundamental.choose(time, heading, harmonics)?;
     let basis = Basis::new(time, choice.fundamental, harmonics)?;

@@ -43,7 +43,7 @@ impl PriorCheck {
 
     /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` if
     /// the records add no information.
-    pub(super) fn of(expected: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn from_fit(expected: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
             (0..values.len()).filter(|&place| !is_trial_specific(expected.coefficients[place].key)).collect();
         let of_ship =

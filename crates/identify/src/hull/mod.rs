@@ -7,7 +7,7 @@
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`CoefficientDeviations`], which describe the error of the form and not of a sensor:
+//! with the standard deviations of [`ResidualDeviations`], which describe the error of the form and not of a sensor:
 //! a hull of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every
 //! record, down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw
 //! rate is not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it
@@ -46,7 +46,7 @@ pub use conflict::PriorCheck;
 pub use error::HullFitError;
 pub use expected::{EarlierHull, HullFormPrior, differs_in_froude_number};
 pub use moment::FormMoment;
-pub use objective::CoefficientDeviations;
+pub use objective::ResidualDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
@@ -127,7 +127,7 @@ pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, H
         window: misfit.window.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
     };
-    let moment = FormMoment::of(
+    let moment = FormMoment::from_misfits(
         &form.with_coefficients(search.estimate.as_slice()).ok_or(HullFitError::NoReplay)?,
         &tracks,
         &misfits,
@@ -192,7 +192,7 @@ impl HullEstimate {
 
     /// Check of the prior against the records; `None` if the records add no information.
     pub fn prior_check(&self) -> Option<PriorCheck> {
-        PriorCheck::of(&self.expected, &self.values, &self.covariance)
+        PriorCheck::from_fit(&self.expected, &self.values, &self.covariance)
     }
 
     /// Mean square residual of whole records, rad².

@@ -25,7 +25,7 @@ const MIN_GAIN: f64 = 1e-6;
 /// Standard deviations of the residuals of a hull, which weigh the kinds of reading: even the best form leaves an
 /// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CoefficientDeviations {
+pub struct ResidualDeviations {
     /// Standard deviation of the heading of a whole replay, rad.
     pub whole: f64,
     /// Standard deviation of the heading in a window, rad.
@@ -35,12 +35,12 @@ pub struct CoefficientDeviations {
 }
 
 /// Minimum deviations of a record.
-const MIN_DEVIATIONS: CoefficientDeviations =
-    CoefficientDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+const MIN_DEVIATIONS: ResidualDeviations =
+    ResidualDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search, so large that the hull stays near its prior.
-const FIRST_DEVIATIONS: CoefficientDeviations =
-    CoefficientDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
+const FIRST_DEVIATIONS: ResidualDeviations =
+    ResidualDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean square residuals of a record, and the initial yaw rate of the whole replay, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -62,7 +62,7 @@ struct Starts {
 pub(super) struct HullObjective<'a> {
     expected: &'a HullFormPrior,
     tracks: &'a [HullTrack],
-    deviations: Vec<CoefficientDeviations>,
+    deviations: Vec<ResidualDeviations>,
     starts: Vec<Starts>,
     /// `true` once the starts have been fitted.
     is_begun: bool,
@@ -194,7 +194,7 @@ impl<'a> HullObjective<'a> {
     pub fn reweigh(&mut self, at: &[f64]) {
         let misfits = self.misfits(at).unwrap_or_default();
         for (deviations, misfit) in self.deviations.iter_mut().zip(misfits) {
-            *deviations = CoefficientDeviations {
+            *deviations = ResidualDeviations {
                 whole: MIN_DEVIATIONS.whole.max(misfit.whole.sqrt()),
                 window: MIN_DEVIATIONS.window.max(misfit.window.sqrt()),
                 speed: MIN_DEVIATIONS.speed.max(misfit.speed.sqrt()),
@@ -228,8 +228,8 @@ impl Objective for HullObjective<'_> {
         let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with_coefficients(at)) else {
             return f64::INFINITY;
         };
-        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &CoefficientDeviations)| {
-            let CoefficientDeviations { whole, window, speed } = *deviations;
+        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &ResidualDeviations)| {
+            let ResidualDeviations { whole, window, speed } = *deviations;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(misfit.whole, whole) + share(misfit.window, window);
             self.weight(track) * (headings + share(misfit.speed, speed))
@@ -251,7 +251,7 @@ impl Objective for HullObjective<'_> {
             normal.gradient.axpy(-departure.value, &by, 1.0);
         }
         for ((track, starts), deviations) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
-            let CoefficientDeviations { whole, window, speed } = *deviations;
+            let ResidualDeviations { whole, window, speed } = *deviations;
             let lengths = self.weight(track);
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);

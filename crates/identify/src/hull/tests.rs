@@ -274,7 +274,7 @@ fn records_that_tell_no_hull_are_refused() {
     let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.3 * SPEED);
     let [bare, slow] = refused(slow);
     assert_eq!(bare, Some(HullFitError::Particulars));
-    assert!(matches!(slow, Some(HullFitError::GathersWay { .. })), "{slow:?}");
+    assert!(matches!(slow, Some(HullFitError::StartsNearRest { .. })), "{slow:?}");
     let short = |columns: &mut Columns| {
         columns.time.truncate(10);
         columns.channels.values_mut().for_each(|values| values.truncate(10));

@@ -87,7 +87,7 @@ impl HullTrack {
         let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
         let share = track.start[0] * reference.length / (track.second * approach);
         match share < MIN_START_SPEED {
-            true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share }),
+            true => Err(HullFitError::StartsNearRest { trial: trial.name().to_owned(), share }),
             false => Ok(track),
         }
     }

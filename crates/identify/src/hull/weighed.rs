@@ -26,6 +26,6 @@ pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(Earlie
     let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
     let before =
         HullFormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
-    let check = before.and_then(|before| PriorCheck::of(&before, &after.values, &after.covariance));
+    let check = before.and_then(|before| PriorCheck::from_fit(&before, &after.values, &after.covariance));
     Some((after, check))
 }

@@ -11,9 +11,9 @@ use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::{COMPASS, RUDDER};
+use crate::likelihood::parameters::{COMPASS_INDEX, RUDDER_INDEX};
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
-use crate::output_error::{self, CONDITION_LIMIT, MIN_ROWS};
+use crate::output_error::{self, MAX_CONDITION, MIN_ROWS};
 use crate::replay::best_start;
 use crate::robust;
 use crate::samples::checked_track;
@@ -157,7 +157,7 @@ impl PreparedRecords {
         }
         kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jumps.clone_from(&record.jumps));
         let Some(&(lowest, _)) = all.first() else {
-            return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: CONDITION_LIMIT });
+            return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: MAX_CONDITION });
         };
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
         let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
@@ -211,7 +211,7 @@ fn bic(records: &[Record], point: &Point) -> f64 {
             // The entry of a declared rudder error represents the size of the compass error, which all laws count.
             vector
                 .active_entries(record.has_gyro())
-                .filter(|&entry| entry != RUDDER || record.declared.is_none())
+                .filter(|&entry| entry != RUDDER_INDEX || record.declared.is_none())
                 .count()
         })
         .sum();
@@ -237,7 +237,7 @@ fn fit_laws(
         all.clear();
     }
     for (a, vectors) in coloured_starts {
-        let starts = search.entry_starts(a, &vectors, COMPASS);
+        let starts = search.entry_starts(a, &vectors, COMPASS_INDEX);
         let start = search.best_start(starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
@@ -284,7 +284,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         }
         let restricted = |point: &Point| point.restricted;
         let start = match kind {
-            MomentKind::None if none[0].rudder => search.best_start(search.entry_starts(a, &none, RUDDER), restricted),
+            MomentKind::None if none[0].rudder => search.best_start(search.entry_starts(a, &none, RUDDER_INDEX), restricted),
             MomentKind::None => search.evaluate(a, &none),
             MomentKind::White | MomentKind::Walk => {
                 search.best_level(search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))

@@ -12,7 +12,7 @@ use estimation::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
 use crate::profile::solve2;
@@ -285,7 +285,7 @@ impl Weight {
             products: gram([rudder, constant, measured]),
             readings,
             freedom: readings - fitted,
-            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER].exp()),
+            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
         }
     }
 

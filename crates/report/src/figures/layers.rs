@@ -6,10 +6,10 @@ use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
-use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, draw_record, spread_overlapping, zero_stroke};
+use super::shared::{ACROSS_PAD_SHARE, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
 use super::side_labels;
 use crate::axis::{Axis, TickRule};
-use crate::backend::{PlotResult, SvgGroup, UNITS, units};
+use crate::backend::{PlotResult, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -214,7 +214,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
         data.fixed.extend(stack.marks.iter().map(|mark| mark.value));
-        let (axis, cut) = ruler.axis(&data, if has_marks { PAD } else { ACROSS_PAD });
+        let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD_SHARE });
         is_cut |= cut;
         AxisSide::new(axis, ruler.title.as_str())
     };
@@ -223,7 +223,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
         data.fixed
             .extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
-        let (axis, cut) = row.y.axis(&data, PAD);
+        let (axis, cut) = row.y.axis(&data, PAD_SHARE);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
         // If the font is large relative to the panel, the data keep a part of it.
@@ -349,14 +349,14 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.draw_elements(ship))?;
             }
         }
-        LayerKind::Words(..) => {}
+        LayerKind::Labels(..) => {}
     }
     Ok(0)
 }
 
 /// Writes the words of a layer next to its points, on the other side if they would leave the panel.
 fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Words(colour, corner, words) = &layer.kind else { return Ok(()) };
+    let LayerKind::Labels(colour, corner, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
     for ((x, y), words) in layer.curve.pairs().zip(words) {
@@ -446,5 +446,5 @@ fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme
     let [low, high] = [place(ends[0].min(ends[1]), bottom + far), place(ends[0].max(ends[1]), top - far)];
     let cap = units(theme.marker).max(2) as u32;
     chart.canvas.area.draw(&ErrorBar::new_vertical(units(x), low, low, high, stroke.style(), cap))?;
-    Ok(f64::from(low - high) / UNITS)
+    Ok(f64::from(low - high) / UNITS_PER_POINT)
 }

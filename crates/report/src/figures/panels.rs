@@ -136,7 +136,7 @@ pub struct Marks {
 
 /// Place of the words of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WordsPlace {
+pub struct LabelPlacement {
     /// `true` above the point.
     pub is_above: bool,
     /// `true` to the right of the point.
@@ -161,7 +161,7 @@ pub enum LayerKind {
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
     /// Words next to the points, all in one corner of their points.
-    Words(RGBColor, WordsPlace, Vec<String>),
+    Labels(RGBColor, LabelPlacement, Vec<String>),
 }
 
 /// One layer of a panel.
@@ -237,7 +237,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour,
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
@@ -257,7 +257,7 @@ impl Layer {
                 LegendSymbol::LineAndMarker(pen.stroke(theme), *look)
             }
             LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
-            LayerKind::Words(..) => return None,
+            LayerKind::Labels(..) => return None,
             LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })

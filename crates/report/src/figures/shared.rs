@@ -13,10 +13,10 @@ use crate::palette::{INK, RECORD};
 use crate::theme::Theme;
 
 /// Free space above and below the data, as a share of its range.
-pub(super) const PAD: f64 = 0.08;
+pub(super) const PAD_SHARE: f64 = 0.08;
 
 /// Free space left and right of lines.
-pub(super) const ACROSS_PAD: f64 = 0.02;
+pub(super) const ACROSS_PAD_SHARE: f64 = 0.02;
 
 /// Maximum number of points of a panel that are drawn as dots; more are drawn as a line.
 const DENSE: usize = 400;

@@ -2,7 +2,7 @@
 //! strokes are visible, cuts are noted.
 
 use super::*;
-use crate::backend::UNITS;
+use crate::backend::UNITS_PER_POINT;
 use crate::curve::PlotCurve;
 use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
 use crate::{Drawing, Theme};
@@ -227,16 +227,16 @@ fn check(name: &str, figure: &Drawing) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();
-    let (right, bottom) = ((width * UNITS) as i64 + 1, (height * UNITS) as i64 + 1);
+    let (right, bottom) = ((width * UNITS_PER_POINT) as i64 + 1, (height * UNITS_PER_POINT) as i64 + 1);
     for (x, y) in places(&uncut(svg)) {
         assert!((0..=right).contains(&x) && (0..=bottom).contains(&y), "{name}: {x},{y} is off the page");
     }
     // Minimum stroke width: 0.3 points.
     for stroke in numbers(svg, "stroke-width") {
-        assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS, "{name}: stroke {stroke}");
+        assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS_PER_POINT, "{name}: stroke {stroke}");
     }
     for size in numbers(svg, "font-size") {
-        assert!(size.parse::<f64>().unwrap() >= 6.5 * UNITS, "{name}: font size {size}");
+        assert!(size.parse::<f64>().unwrap() >= 6.5 * UNITS_PER_POINT, "{name}: font size {size}");
     }
     assert!(resvg::usvg::Tree::from_str(svg, &resvg::usvg::Options::default()).is_ok(), "{name}: invalid SVG");
 }

@@ -4,7 +4,7 @@
 
 use super::content::Table;
 use super::head::TableColumn;
-use super::latex_text::{escape, script, worded};
+use super::latex_text::{escape, script, heading_text};
 use super::width::{Alignment, columns as characters};
 
 /// Maximum number of rows on one page; longer tables run over pages.
@@ -71,7 +71,7 @@ impl LatexColumn {
         };
         let heading = wrapped(&column.head(), widest.max(HEADING));
         Self {
-            heading: heading.iter().map(|line| format!("{{{}}}", worded(line))).collect(),
+            heading: heading.iter().map(|line| format!("{{{}}}", heading_text(line))).collect(),
             cells: cells
                 .iter()
                 .zip(&numbers)
@@ -194,7 +194,7 @@ fn body(set: &[LatexColumn], rows: usize) -> String {
 
 fn caption(table: &Table, end: &str) -> String {
     let mut out =
-        table.title.as_ref().map_or_else(String::new, |title| format!("  \\caption{{{}}}{end}\n", worded(title)));
+        table.title.as_ref().map_or_else(String::new, |title| format!("  \\caption{{{}}}{end}\n", heading_text(title)));
     if let (Some(label), Some(_)) = (&table.label, &table.title) {
         out.insert_str(out.len() - 1 - end.len(), &format!("\\label{{tab:{label}}}"));
     }

@@ -47,7 +47,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// Heading or caption: as [`escape`], with symbols that are separate words set as symbols.
-pub(super) fn worded(text: &str) -> String {
+pub(super) fn heading_text(text: &str) -> String {
     let word = |word: &str| match SYMBOLS.contains(&word) {
         true => format!("${word}$"),
         false => escape(word),
@@ -83,7 +83,7 @@ mod tests {
     fn what_the_program_writes_is_mathematics() {
         assert_eq!(escape("σ² 10⁻³ \\ x_1"), "$\\sigma$$^{2}$ 10$^{-3}$ \\textbackslash{} x\\_1");
         assert_eq!(escape("r₁₂ √T′ ψ̇ K̂"), "r$_{12}$ $\\surd$T$'$ $\\dot{\\psi}$ $\\hat{K}$");
-        assert_eq!(worded("K/T median of Kempf"), "$K/T$ median of Kempf");
+        assert_eq!(heading_text("K/T median of Kempf"), "$K/T$ median of Kempf");
     }
 
     #[test]

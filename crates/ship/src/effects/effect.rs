@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use estimation::number::Real;
 
-use super::file_number::{FileNumber, FileRole};
+use super::file_number::{ScenarioNumber, NumberConversion};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
@@ -30,7 +30,7 @@ pub struct Parameter {
     /// `true` if the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
     /// Key in a scenario file; `None` for a parameter that no scenario has.
-    pub file: Option<FileNumber>,
+    pub file: Option<ScenarioNumber>,
 }
 
 impl Parameter {
@@ -54,19 +54,19 @@ impl Parameter {
 
     /// Required parameter in a scenario file, with its key and the size of its unit in SI.
     pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
-        Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
+        Self { file: Some(ScenarioNumber { key, unit, meaning, role: NumberConversion::Value, default: None }), ..self }
     }
 
     /// Parameter with another role in the scenario file.
-    pub(super) const fn in_role(self, role: FileRole) -> Self {
+    pub(super) const fn in_role(self, role: NumberConversion) -> Self {
         let Some(number) = self.file else { return self };
-        Self { file: Some(FileNumber { role, ..number }), ..self }
+        Self { file: Some(ScenarioNumber { role, ..number }), ..self }
     }
 
     /// Parameter with a default in the scenario file.
     pub(super) const fn by_default(self, default: f64) -> Self {
         let Some(number) = self.file else { return self };
-        Self { file: Some(FileNumber { default: Some(default), ..number }), ..self }
+        Self { file: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
     }
 
     /// `true` if its dimension is unknown.
@@ -131,7 +131,7 @@ pub struct SwayCoupling<R = f64> {
 
 /// Quantities on which an effect acts in addition to its own states; other quantities are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ActsOn {
+pub struct EffectTargets {
     /// `true` if the effect transforms the acting rudder.
     pub rudder: bool,
     /// `true` if the effect scales damping and gain.
@@ -140,7 +140,7 @@ pub struct ActsOn {
     pub moment: bool,
 }
 
-impl ActsOn {
+impl EffectTargets {
     /// No quantity.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
@@ -192,7 +192,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Keys of the parameters in a scenario file; `None` for a form that needs a measured record.
-    fn in_file(&self) -> Option<Vec<FileNumber>> {
+    fn in_file(&self) -> Option<Vec<ScenarioNumber>> {
         self.parameters().iter().map(|parameter| parameter.file).collect()
     }
 
@@ -211,7 +211,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect>;
 
     /// Quantities on which the effect acts.
-    fn acts_on(&self) -> ActsOn;
+    fn acts_on(&self) -> EffectTargets;
 
     /// Number of states of the effect.
     fn states(&self) -> usize {

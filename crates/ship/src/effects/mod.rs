@@ -24,10 +24,10 @@ mod wave_heading;
 
 pub use backlash::Backlash;
 pub use effect::{
-    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
+    Action, EffectTargets, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
     RecordScales, SwayCoupling,
 };
-pub use file_number::{FileNumber, FileRole};
+pub use file_number::{ScenarioNumber, NumberConversion};
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
 pub use list::{all, listed_effect, meaning};
 pub use second_order::SecondOrder;

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    Action, EffectTargets, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use super::file_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
@@ -140,8 +140,8 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::SCALE
+    fn acts_on(&self) -> EffectTargets {
+        EffectTargets::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {

@@ -1,7 +1,7 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use estimation::number::Real;
 
@@ -53,10 +53,10 @@ impl Effect for SteeringLag {
         })
     }
 
-    fn acts_on(&self) -> ActsOn {
+    fn acts_on(&self) -> EffectTargets {
         match self {
-            Self::DeadTime => ActsOn::NONE,
-            Self::FirstOrder => ActsOn::RUDDER,
+            Self::DeadTime => EffectTargets::NONE,
+            Self::FirstOrder => EffectTargets::RUDDER,
         }
     }
 

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use campaign::disk;
 use campaign::failure::{Failure, OnPath};
-use campaign::files::MANIFEST;
+use campaign::files::MANIFEST_FILE;
 use campaign::folder::ResultFolder;
 use document::ErrorCode;
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// Folder for the results of a command. Fails if it holds results of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|name| *name != document);
+    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST_FILE].into_iter().filter(|name| *name != document);
     match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",

@@ -4,7 +4,7 @@ use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
-use campaign::statistics::MIN_SUMMARISED;
+use campaign::statistics::MIN_SUMMARISED_VALUES;
 use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
@@ -98,7 +98,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
-            if board.cases < MIN_SUMMARISED {
+            if board.cases < MIN_SUMMARISED_VALUES {
                 return points(method);
             }
             let standing = board.standings.iter().find(|standing| standing.method == **method);
@@ -123,7 +123,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
             "Score: rms heading error; for K and T the larger relative error. Left of the line a method is better than {}. Medians over \
-             the cases; hollow: single cases if fewer than {MIN_SUMMARISED}; bars: 95 %, for six independent records or more.",
+             the cases; hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; bars: 95 %, for six independent records or more.",
             results.reference
         )),
         ..NamedRows::default()

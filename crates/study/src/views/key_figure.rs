@@ -4,7 +4,7 @@
 use campaign::design::Design;
 use campaign::scenario::Highlight;
 use report::figures::{
-    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack, WordsPlace,
+    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack, LabelPlacement,
 };
 use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
@@ -80,7 +80,7 @@ fn pale(layer: Layer) -> Layer {
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
+        LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour = QUIET,
         LayerKind::Record => {}
     }
     Layer { kind, ..layer }.within(ASIDE)
@@ -157,9 +157,9 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
             }
             // Above a rising curve there is room to the left, below it to the right.
             let is_rising = curve[(place + 1).min(curve.len() - 1)].1 > curve[place.saturating_sub(1)].1;
-            let words = LayerKind::Words(
+            let words = LayerKind::Labels(
                 look.colour,
-                WordsPlace { is_above, is_right: is_above != is_rising },
+                LabelPlacement { is_above, is_right: is_above != is_rising },
                 vec![text.1.clone()],
             );
             values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, words));
@@ -354,7 +354,7 @@ mod tests {
         };
         let layers = &data.stacks[0].panels[0].layers;
         let words = layers.iter().filter_map(|layer| match &layer.kind {
-            LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
+            LayerKind::Labels(.., words) => Some((layer.curve.x.clone(), words.clone())),
             _ => None,
         });
         assert_eq!(

@@ -9,7 +9,7 @@ use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
 use campaign::scenario::Prose;
-use campaign::statistics::{MIN_SUMMARISED, Statistic, distinct};
+use campaign::statistics::{MIN_SUMMARISED_VALUES, Statistic, distinct};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
@@ -143,7 +143,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
                 ..RowItem::new("", RowKind::Mark(pale, error, None)).clipped_if_far()
             })
             .collect();
-        let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED);
+        let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED_VALUES);
         items.extend(median.map(|median| RowItem {
             number: Some(degrees(median.value)),
             place: RowPlace::Beside,

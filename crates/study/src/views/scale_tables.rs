@@ -15,7 +15,7 @@ pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
     };
-    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(symbols_of);
+    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::Undecided].map(symbols_of);
     let mut parts = Vec::new();
     for (symbols, predicates) in [
         (differing, ["does not scale", "do not scale"]),

@@ -45,8 +45,8 @@ struct StudiesPage {
 
 /// Checks that all folders are those of studies, and that the page replaces no file of another program.
 pub fn check_folders(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
-    if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
-        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
+    if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST_FILE).is_file()) {
+        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST_FILE);
         return Err(Failure::in_file(folder, format!("{problem}; give folders of studies, or this folder alone")));
     }
     let path = place.join(PAGE);
@@ -70,7 +70,7 @@ pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Fail
 }
 
 fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
-    let path = folder.join(files::MANIFEST);
+    let path = folder.join(files::MANIFEST_FILE);
     let missing = || Failure::in_file(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
     let words = manifest.prose();

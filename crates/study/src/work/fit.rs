@@ -142,11 +142,11 @@ pub fn fit(
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
-    warnings.extend(answers.iter().flat_map(answer_warnings));
+    warnings.extend(answers.iter().flat_map(verdict_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };
-    let (verdict, zigzags) = (verdict::from_answers(trials, &answers), RecordedZigZags::from_trials(trials));
+    let (verdict, zigzags) = (verdict::from_estimates(trials, &answers), RecordedZigZags::from_trials(trials));
     let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
     let document = FitDocument {
         schema: SCHEMA.into(),
@@ -228,7 +228,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
 }
 
 /// Warnings of a method.
-fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+fn verdict_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
     let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
     WarningSource::Method(entry.method.clone()).attach_to(warnings).collect()
 }

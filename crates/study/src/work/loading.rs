@@ -192,7 +192,7 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 mod tests {
     use super::*;
     use document::Warning;
-    use document::identified_hull::{IdentifiedCoefficient, by_keys};
+    use document::identified_hull::{IdentifiedCoefficient, keyed_particulars};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 
     /// A tanker in ballast.
@@ -220,7 +220,7 @@ mod tests {
             form: FORM.into(),
             length_m: 320.0,
             speed_m_s: 8.0,
-            particulars: by_keys(&at_trial()),
+            particulars: keyed_particulars(&at_trial()),
             coefficients: terms.iter().map(coefficient).collect(),
             covariance: (0..terms.len()).map(|i| (0..terms.len()).map(|j| entry(i, j)).collect()).collect(),
             ..IdentifiedHull::default()

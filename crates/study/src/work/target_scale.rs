@@ -26,7 +26,7 @@ pub struct TargetScale {
 }
 
 impl TargetScale {
-    pub fn of_trial(Particulars { length, speed }: Particulars) -> Self {
+    pub fn from_particulars(Particulars { length, speed }: Particulars) -> Self {
         Self { length, speed: Some(speed), is_asked: false }
     }
 
@@ -44,16 +44,16 @@ impl TargetScale {
         let Some((file, first)) = scales.next() else { return Ok(None) };
         match scales.find(|(_, ship)| !is_same_length(ship.length, first.length)) {
             Some((other, ship)) => Err(scale_mismatch([(file, Some(first)), (other, Some(ship))])),
-            None => Ok(Some(Self::of_trial(first))),
+            None => Ok(Some(Self::from_particulars(first))),
         }
     }
 
     /// Scale at which a record is replayed: its own, unless a ship of its length is requested. Without a requested
     /// speed it is that of equal Froude number, not that of the record, which loses speed from its first rows on.
-    pub fn of_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
+    pub fn from_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
             (Some(ship), Some(asked)) if asked.is_asked && is_same_length(ship.length, asked.length) => scale,
-            (ship, _) => ship.map(Self::of_trial).or(scale),
+            (ship, _) => ship.map(Self::from_particulars).or(scale),
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
-use crate::records::{file_and_hash, missing_track_warning, particulars, rudder_logged_late, unique_names};
+use crate::records::{file_and_hash, missing_track_warning, particulars, late_rudder_message, unique_names};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -122,7 +122,7 @@ pub fn trace(
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = identified_ship::from_analysis(&analysis, &shown);
-    warnings.extend(ship.rudder_logged_late().map(|late| WarningCode::LateRudder.warning(rudder_logged_late(late))));
+    warnings.extend(ship.logged_rudder_delay().map(|late| WarningCode::LateRudder.warning(late_rudder_message(late))));
     let earlier_trials = earlier_trials::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;

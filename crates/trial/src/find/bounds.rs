@@ -51,13 +51,13 @@ pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<Det
             Manoeuvre::PullOut { .. } => (pattern.first(), None),
             _ => {
                 let start = first_execute(record, &pattern.holds, pattern.scale, free);
-                (start, Some(ApproachSegment::of(record, pattern, start, free)))
+                (start, Some(ApproachSegment::from_pattern(record, pattern, start, free)))
             }
         };
         let first = approach.as_ref().map_or(start, |segment| segment.first);
         let last = last.max(start);
         let executes = pattern.holds.iter().filter(|hold| hold.first <= last).count();
-        let mut quality = Quality::of(record, first, last);
+        let mut quality = Quality::from_rows(record, first, last);
         quality.rudder_spread = spread(pattern);
         if let Some(segment) = approach {
             quality.approach = Some(segment.approach);
@@ -193,7 +193,7 @@ struct ApproachSegment {
 }
 
 impl ApproachSegment {
-    fn of(record: &PreparedLog, pattern: &Pattern, start: usize, free: usize) -> Self {
+    fn from_pattern(record: &PreparedLog, pattern: &Pattern, start: usize, free: usize) -> Self {
         let time = record.log.time;
         let earliest = time.partition_point(|&t| t < time[start] - pattern.scale).max(free).min(start);
         let speed_change = change(record.log.speed, earliest, start);

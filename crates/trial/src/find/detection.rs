@@ -51,7 +51,7 @@ pub struct Quality {
 
 impl Quality {
     /// Quality of the rows of a part, without its approach and holds.
-    pub(crate) fn of(record: &PreparedLog, first: usize, last: usize) -> Self {
+    pub(crate) fn from_rows(record: &PreparedLog, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
         let (mut read, mut missing) = (time[0], 0);

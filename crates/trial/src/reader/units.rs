@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
+use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::wording::shortened;
 
 /// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
@@ -226,7 +226,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let channels = &log.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
         let rate_deg_s = mean_rate(times, heading).to_degrees();
-        if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
+        if !(MEAN_RATE_RANGE_DEG_S[0]..MEAN_RATE_RANGE_DEG_S[1]).contains(&rate_deg_s) {
             return Err(refusal());
         }
     }

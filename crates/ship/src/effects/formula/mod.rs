@@ -16,13 +16,13 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales};
+use super::effect::{Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
-use parse::MAX_CHARS;
+use parse::MAX_FORMULA_CHARS;
 use points::{SignalScales, way_speed};
 use program::{FormulaProgram, FormulaSignal, RECORD_CONSTANTS, RecordConstants};
 
@@ -59,9 +59,9 @@ impl MirrorSymmetry {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`ActsOn::RUDDER`] for the acting rudder, from `delta` alone, rad; [`ActsOn::MOMENT`] for a yaw acceleration,
+    /// [`EffectTargets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTargets::MOMENT`] for a yaw acceleration,
     /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
-    pub(super) acts_on: ActsOn,
+    pub(super) acts_on: EffectTargets,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
     /// Prior of every constant.
@@ -78,7 +78,7 @@ pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
-    acts_on: ActsOn,
+    acts_on: EffectTargets,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: RecordConstants,
@@ -149,7 +149,7 @@ impl Formula {
             channels: program.channels(),
             program,
             description,
-            acts_on: ActsOn::MOMENT,
+            acts_on: EffectTargets::MOMENT,
             of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
@@ -169,8 +169,8 @@ impl Formula {
             return Err(error(0, expected));
         }
         let length = text.chars().count();
-        if length > MAX_CHARS {
-            return Err(error(MAX_CHARS, format!("{length} characters, expected at most {MAX_CHARS}")));
+        if length > MAX_FORMULA_CHARS {
+            return Err(error(MAX_FORMULA_CHARS, format!("{length} characters, expected at most {MAX_FORMULA_CHARS}")));
         }
         let (formula, expectation) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end(), true)?;
@@ -238,7 +238,7 @@ impl Effect for Formula {
         if !self.channels.iter().copied().all(has) {
             return None;
         }
-        let SignalScales { speed, length, .. } = SignalScales::of(records);
+        let SignalScales { speed, length, .. } = SignalScales::from_records(records);
         let is_always = f64::from(u8::from(records.speed.is_none()));
         let of_record = [speed, records.span[0], length, way_speed(records), is_always];
         let effect = Self { of_record, ..self.clone() };
@@ -253,7 +253,7 @@ impl Effect for Formula {
         Some(CandidateEffect::new(effect, priors))
     }
 
-    fn acts_on(&self) -> ActsOn {
+    fn acts_on(&self) -> EffectTargets {
         self.acts_on
     }
 

@@ -15,7 +15,7 @@
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::{COMMON, CUBIC, CalmHull, PolynomialTerm, QUADRATIC};
+use super::equations::{COMMON_TERMS, CUBIC_TERMS, CalmHull, PolynomialTerm, QUADRATIC_TERMS};
 use crate::vessel::mmg::{Mmg, Parameters};
 use crate::vessel::prior::HullPrior;
 
@@ -64,8 +64,8 @@ pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]>
 /// fails.
 fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
-        law(CalmHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
-        law(CalmHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON_TERMS.len() + QUADRATIC_TERMS.len() }>>::Quadratic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON_TERMS.len() + CUBIC_TERMS.len() }>>::Cubic, truth, differences)?,
     ])
 }
 
@@ -90,7 +90,7 @@ fn law<const N: usize>(
     truth: &DVector<f64>,
     differences: &DMatrix<f64>,
 ) -> Option<PolynomialLaw> {
-    let mut values = DVector::from_fn(N, |place, _| COMMON.get(place).map_or(0.0, begin));
+    let mut values = DVector::from_fn(N, |place, _| COMMON_TERMS.get(place).map_or(0.0, begin));
     let linearised = |values: &DVector<f64>| {
         let variables = std::array::from_fn(|place| Dual::variable(values[place], place, 1.0));
         let rows = accelerations(&polynomial(variables));

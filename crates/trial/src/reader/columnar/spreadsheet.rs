@@ -11,7 +11,7 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 
 use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use super::text::{self, Written};
+use super::text::{self, ChunkReader};
 use crate::decoder::catch_panic;
 use crate::names;
 use crate::reader::error::Problem;
@@ -47,7 +47,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         }
     };
     std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::from_input)?;
-    Ok(Box::new(Written::new(receive.into_iter())))
+    Ok(Box::new(ChunkReader::new(receive.into_iter())))
 }
 
 /// Sends the lines of the sheet with the table.

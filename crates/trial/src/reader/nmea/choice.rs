@@ -1,4 +1,4 @@
-//! Choice of an instrument for every channel. A channel never mixes instruments: the better kind is preferred (true
+//! ChosenInstruments of an instrument for every channel. A channel never mixes instruments: the better kind is preferred (true
 //! heading before magnetic, speed through the water before speed over ground), then the instrument with the most
 //! readings, then the first in the log. A choice among several is a warning.
 
@@ -52,16 +52,16 @@ impl<'a> Offer<'a> {
 const MAX_RUDDER_DIFFERENCE_DEG: f64 = 2.0;
 
 /// Channels of a log with the warnings of their choice.
-pub(super) struct Choice<'a> {
+pub(super) struct ChosenInstruments<'a> {
     instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
     /// Decisions between instruments, and implausible entries.
     pub warnings: Vec<Warning>,
 }
 
-impl<'a> Choice<'a> {
+impl<'a> ChosenInstruments<'a> {
     /// All channels of the instruments.
-    pub fn of(instruments: &'a [NmeaInstrument]) -> Self {
+    pub fn from_instruments(instruments: &'a [NmeaInstrument]) -> Self {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();

@@ -4,7 +4,7 @@ use crate::reader::columnar::text;
 use crate::reader::error::Problem;
 
 /// Kind of a data element with a packed one.
-pub const COMPRESSED: u32 = 15;
+pub const COMPRESSED_ELEMENT: u32 = 15;
 
 /// Bytes of a number by the kind of its data element; `None` for a kind without numbers.
 pub fn size(kind: u32) -> Option<usize> {
@@ -39,12 +39,12 @@ pub struct OtherVariable {
 pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
 
 /// Name of a cell array in messages.
-pub const CELL: &str = "a cell array";
+pub const CELL_ARRAY: &str = "a cell array";
 
 /// Name of a class without numbers in messages.
 pub fn class_name(class: u32) -> &'static str {
     match class {
-        1 => CELL,
+        1 => CELL_ARRAY,
         2 => "a structure",
         4 => "text",
         5 => "a sparse matrix",
@@ -80,7 +80,7 @@ impl<'a> ByteCursor<'a> {
         }
         let length = self.word()? as usize;
         let data = self.take(length)?;
-        if tag != COMPRESSED {
+        if tag != COMPRESSED_ELEMENT {
             let filling = (8 - length % 8) % 8;
             self.tail = self.tail.get(filling..).unwrap_or_default();
         }
