@@ -13,7 +13,7 @@ use crate::block::Block;
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{TIMINGS_FOLDER, ROWS_FOLDER};
+use crate::files::{ROWS_FOLDER, TIMINGS_FOLDER};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;

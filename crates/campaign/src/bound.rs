@@ -21,7 +21,7 @@ use coloured::CompassError;
 /// noise, for two random moments at once, for a compass with white and coloured error combined with another noise, and
 /// for a record that does not determine the ship.
 ///
-/// The information of the records adds; each has its own initial state.
+/// The information of the records adds; each has a separate initial state.
 pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[SimulatedTrial],

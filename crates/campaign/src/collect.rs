@@ -18,7 +18,7 @@ use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
-use crate::plan::{TrialPlan, shard_blocks, max_trials};
+use crate::plan::{TrialPlan, max_trials, shard_blocks};
 use crate::rows::StudyRow;
 use crate::scenario::records::DATA_FOLDER_VARIABLE;
 use crate::scenario::{DesignCell, Scenario};

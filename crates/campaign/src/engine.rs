@@ -38,7 +38,7 @@ pub struct TrialOutcome {
 /// Prefixes of failures of the trial itself, not of a method.
 const NO_TRIAL: [&str; 2] = ["specification:", "simulation:"];
 
-/// `true` if a failure is that of a method on a trial that could be simulated.
+/// `true` for the failure of a method on a trial that could be simulated.
 pub fn is_method_failure(failure: &str) -> bool {
     !NO_TRIAL.iter().any(|begin| failure.starts_with(begin))
 }
@@ -339,8 +339,8 @@ const MIN_PROBABILITY: f64 = 0.005;
 /// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
 const DIGITS: f64 = 1000.0;
 
-/// Difference of log evidence between the one missing effect and the best other effect; `None` unless exactly one is
-/// missing.
+/// Difference of log evidence between the missing effect and the best other effect; `None` unless exactly one effect
+/// is missing.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {

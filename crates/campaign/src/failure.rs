@@ -1,4 +1,4 @@
-//! Failure as shown to a user: one message, and who has to act.
+//! Failure as reported to a user: its kind, one message, and the parts of the message for programs.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -13,7 +13,7 @@ use serde::Serialize;
 /// Prefix of the message of a failure.
 const ERROR: &str = "error: ";
 
-/// Failure of a command, as it is reported to the user.
+/// Failure of a command, as reported to the user: kind, message, and its parts for programs.
 #[derive(Debug)]
 pub struct Failure {
     /// Kind of failure: wrong input, failed work, or a request to stop.

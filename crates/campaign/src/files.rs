@@ -1,8 +1,8 @@
 //! Names of the primary files of a result folder, from which all tables and plots are made.
 
-/// Folder of the rows, one file per block.
+/// Name of the folder of the rows, one file per block.
 pub const ROWS_FOLDER: &str = "rows";
-/// Folder of the timings, one file per block.
+/// Name of the folder of the timings, one file per block.
 pub const TIMINGS_FOLDER: &str = "timings";
 /// File of the durations of simulation and methods.
 pub const TIMINGS_FILE: &str = "timings.csv";

@@ -29,7 +29,10 @@ impl ResultFolder {
     /// Fails if it cannot be created.
     pub fn make(path: &Path) -> Result<Self, Failure> {
         disk::create_folder(path).map_err(|error| {
-            Failure::execution(format!("failed to make the folder {}: {error}; give another one with --out", path.display()))
+            Failure::execution(format!(
+                "failed to make the folder {}: {error}; give another one with --out",
+                path.display()
+            ))
         })?;
         Ok(Self { path: path.to_owned() })
     }

@@ -99,7 +99,8 @@ pub fn read(
     let separator = [b';', b'\t'].into_iter().find(|candidate| head.as_bytes().contains(candidate)).unwrap_or(b',');
     let mut table =
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
-    let columns = AnswerColumns::from_header(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
+    let columns =
+        AnswerColumns::from_header(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
     if !columns.ignored.is_empty() {
         observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
@@ -147,7 +148,7 @@ pub fn read(
         .collect())
 }
 
-/// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
+/// Warns of trials without a line of a method; a stopping rule leaves their number open.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
     let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_cell_trials(cell)).sum();
     let left = trials - answered;

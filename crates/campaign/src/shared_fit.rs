@@ -132,8 +132,8 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// Validation record of a trial; `None` if its ship length differs from that of the fitted records, since
-    /// responses of another scale are not replayed.
+    /// Validation record of a trial; `None` if its ship length differs from the fitted records, since responses of
+    /// another scale are not replayed.
     fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
@@ -148,7 +148,7 @@ impl SharedTrials<'_> {
         Some(answer.map(fit).map_err(|error| error.row_text().into_owned()))
     }
 
-    /// Fit with the identified ship for predictions; `settings` are those of a trace.
+    /// Fit with the identified ship for predictions; `settings` are the settings of a trace.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
@@ -162,7 +162,7 @@ impl SharedTrials<'_> {
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| {
-                    of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
+                    of_base(judge, &PreparedRecord::with_all_rows(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
                 (input.estimate_row(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }

@@ -2,7 +2,7 @@
 //! of all methods, as plot data. It is computed in the run of a study, and plotted from the stored file.
 
 use document::method::MethodEntry;
-use identify::answer::entry;
+use identify::method_entry::method_entry;
 use identify::{Estimate, IdentifierSettings};
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
@@ -62,7 +62,7 @@ pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answer = |method: &Method| {
         // A trace gives no first-order estimate; it has its own report.
         let answer = method.procedure.identify(&trials, &engine::stream_key(scenario, first))?;
-        Some(entry(&method.label, answer, &trials))
+        Some(method_entry(&method.label, answer, &trials))
     };
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
     let shown = |(entry, estimate): (MethodEntry, Option<Estimate>)| {

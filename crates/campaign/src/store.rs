@@ -1,5 +1,5 @@
 //! Primary files of a result folder: rows, design, showcases, timings and manifest. The manifest contains the SHA-256
-//! of the files written on completion; each block of rows contains its own.
+//! of the files written on completion; each block of rows contains its hash.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -63,7 +63,7 @@ impl<const N: usize> Kernel for Gram<'_, N> {
 pub struct ColumnProjection {
     /// Mean.
     pub mean: f64,
-    /// Product with the unit column.
+    /// Component along the unit column.
     pub share: f64,
 }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use estimation::least_squares::LeastSquaresError;
 use thiserror::Error;
 
-/// Failed identification; it is a row of a study like any other result.
+/// Reason why a method gives no estimate; in a study the failure is a row like any estimate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum IdentifyError {
     /// No trial was given.
@@ -92,7 +92,7 @@ pub enum IdentifyError {
         /// Standard deviation of K/T, 1/s².
         sd: f64,
     },
-    /// The estimate is not that of a ship: K/T ≤ 0 or not finite.
+    /// Estimate that is no ship: K/T ≤ 0 or not finite.
     #[error(
         "the estimate is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
          units of rudder and heading, or give a zig-zag: a rudder that is put over once does not separate K and T"

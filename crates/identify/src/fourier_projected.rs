@@ -10,7 +10,7 @@
 //!
 //! Neighbouring rows of a record of more than 50 000 rows are averaged, rudder and heading alike: the equation is
 //! linear, so the averages satisfy it, and the shortest possible harmonic still has some 800 rows. The noise is then
-//! that of the means.
+//! the noise of the means.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).

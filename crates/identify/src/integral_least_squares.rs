@@ -3,7 +3,7 @@
 //! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state enters through c₀ and c₁,
 //! which differ between the stretches between gaps; a, b and b δ_r are common to all stretches of all trials. The
 //! method is nearly as precise as output error for white heading noise; it does not model a yaw disturbance. The
-//! iteration that removes the remaining loss is that of the output-error and instrumental-variable methods. Source of
+//! iteration that removes the remaining loss belongs to the output-error and instrumental-variable methods. Source of
 //! the integral-equation approach: Unbehauen and Rao (1987), Identification of Continuous Systems.
 
 mod equations;

@@ -82,7 +82,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     replay.rms().is_finite().then_some(replay)
 }
 
-/// Root mean square residual of the replays of some records over all headings, rad; `None` if a replay is not finite.
+/// Root mean square heading residual of a response on several records, rad; `None` if a replay is not finite.
 pub fn pooled_response_rms(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
     let replays = trials.iter().map(|trial| replay(trial, response));
     Some(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?))

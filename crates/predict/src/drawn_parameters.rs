@@ -5,7 +5,9 @@ use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{DrawnShip, GOLDEN_RATIO_MINUS_ONE, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
+use crate::mixture::{
+    DrawnShip, GOLDEN_RATIO_MINUS_ONE, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability,
+};
 
 /// Structure and parameters of a drawn ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,7 +86,7 @@ impl EstimateSampler {
         if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
     }
 
-    /// Draw number `number`: equal for equal seeds, whatever else is drawn.
+    /// Draw number `number`, which depends on the seed and the number alone.
     pub fn sample(&self, number: u64) -> DrawnEstimate {
         let share = (0.5 + number as f64 * GOLDEN_RATIO_MINUS_ONE).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);

@@ -39,13 +39,13 @@ pub const MAX_DECIMALS: usize = 2;
 pub struct Form {
     /// Entries in the order of the form.
     pub entries: Vec<ImoFormEntry>,
-    /// Remarks: conditions that are not met or unknown, and others.
+    /// Remarks: unmet or unknown conditions, untested sides, records outside the form.
     pub remarks: Vec<String>,
 }
 
 /// Manoeuvres of the form, to both sides.
 ///
-/// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
+/// Initial turning: 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
     standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().with_first_side(Side::Port), kind]).collect()
 }
@@ -329,9 +329,9 @@ mod tests {
     #[test]
     fn a_trial_at_partial_load_is_corrected_or_reported() {
         let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::identified_ship());
-        let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
-            known.members[0].parameters[1] *= gain;
-            testing::mixture(known)
+        let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut ship, gain)| {
+            ship.members[0].parameters[1] *= gain;
+            testing::mixture(ship)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");

@@ -37,12 +37,12 @@ pub(crate) const ZIG_ZAG_10_10: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const ZIG_ZAG_20_20: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const TURNING_CIRCLE_35: FormManoeuvre = "turning-circle 35";
 
-/// Rudder of that circle and its tolerance, rad. The resolution also allows the maximum rudder angle, which no model
-/// gives.
+/// Rudder angle of the turning circle and its tolerance, rad. The resolution also allows the maximum rudder angle,
+/// which no model gives.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
 pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
-/// Limit of the resolution.
+/// Limit of IMO resolution MSC.137(76) on a figure of merit.
 pub(crate) struct Limit {
     /// Name of the limit, and its section and field in the form.
     pub name: &'static str,
@@ -138,7 +138,7 @@ pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, 
     IMO_LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
-/// Criteria of some predicted manoeuvres, for a ship of this length and speed.
+/// IMO criteria with the predicted values, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;

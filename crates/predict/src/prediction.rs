@@ -292,9 +292,9 @@ mod tests {
     use crate::testing;
 
     fn mixture(change: impl Fn(&mut document::identified_ship::IdentifiedShip)) -> ShipMixture {
-        let mut known = testing::identified_ship();
-        change(&mut known);
-        testing::mixture(known)
+        let mut ship = testing::identified_ship();
+        change(&mut ship);
+        testing::mixture(ship)
     }
 
     fn kind(text: &str) -> Manoeuvre {
@@ -304,12 +304,12 @@ mod tests {
     /// Without uncertainty every drawn ship is the most probable ship.
     #[test]
     fn what_is_known_for_certain_has_no_interval() {
-        let sure = mixture(|known| {
-            known.members[0].covariance.clear();
-            known.members[0].fitted.clear();
-            known.noise.moment = document::RandomMoment::None;
-            known.gear.as_mut().expect("made up").sd_rad_s = 0.0;
-            known.approach_yaw_rate_rad_s = 0.0;
+        let sure = mixture(|ship| {
+            ship.members[0].covariance.clear();
+            ship.members[0].fitted.clear();
+            ship.noise.moment = document::RandomMoment::None;
+            ship.gear.as_mut().expect("made up").sd_rad_s = 0.0;
+            ship.approach_yaw_rate_rad_s = 0.0;
         });
         let prediction = sure.predict(&kind("zig-zag:10/10"), 8, true).expect("a manoeuvre");
         for (name, figure) in &prediction.figures {
@@ -323,9 +323,9 @@ mod tests {
     /// An absent source has a share of zero, and the shares add up to one.
     #[test]
     fn shares_add_up_and_name_the_source() {
-        let noisy = mixture(|known| {
-            known.members[0].covariance.clear();
-            known.members[0].fitted.clear();
+        let noisy = mixture(|ship| {
+            ship.members[0].covariance.clear();
+            ship.members[0].fitted.clear();
         });
         let prediction = noisy.predict(&kind("zig-zag:10/10"), 200, true).expect("a manoeuvre");
         let first = &prediction.figures["first_overshoot_deg"];
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn a_ship_that_does_not_answer_is_refused() {
-        let lost = mixture(|known| known.members[0].parameters[2] = -0.5);
+        let lost = mixture(|ship| ship.members[0].parameters[2] = -0.5);
         let error = lost.predict(&kind("zig-zag:10/10"), 8, false).expect_err("it never turns to starboard");
         assert!(error.to_string().contains("0 of 8"), "{error}");
     }

@@ -315,19 +315,18 @@ mod tests {
     /// in a calm.
     #[test]
     fn hulls_meet_the_wind_of_a_record() {
-        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };
+        let ship = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };
         let wind = [(Channel::WindTrueSpeed, 9.0), (Channel::WindTrueFrom, 0.5), (Channel::Speed, 6.0)];
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
         let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
         let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
         let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
-        let of =
-            |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
-        let met = of(known.clone()).disturbances.wind.expect("a wind");
+        let of = |ship: IdentifiedShip| testing::mixture(ship).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
+        let met = of(ship.clone()).disturbances.wind.expect("a wind");
         assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
         assert_eq!(of(testing::identified_ship()).disturbances.wind, None);
-        assert_eq!(of(known.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
+        assert_eq!(of(ship.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }
 
     #[test]

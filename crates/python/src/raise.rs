@@ -1,6 +1,6 @@
 //! Failures as Python exceptions, with the message of the command line.
 
-use campaign::failure::{FailureKind, Failure};
+use campaign::failure::{Failure, FailureKind};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;

@@ -195,7 +195,8 @@ impl Axis {
             let is_wrapped = !self.fits(width, font) && self.labels().all(has_room);
             return if is_wrapped { self.wrapped(font, pitch) } else { self };
         }
-        let fitting = (2..=MAX_TICK_INTERVALS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
+        let fitting =
+            (2..=MAX_TICK_INTERVALS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
         let mut fewest = fitting.unwrap_or_else(|| self.ticked(1));
         if !fewest.fits(width, font) && fewest.ticks.len() > 2 {
             // The ends alone determine the scale.

@@ -25,7 +25,7 @@ impl IndexedImage {
     /// Image of opaque RGBA pixels, four bytes each; the alpha byte is ignored.
     ///
     /// In addition to the colours of large areas, the palette holds the first colour of each level, on the finest of
-    /// 256, 128, …, 4 levels per channel that leaves few enough; all others become the nearest of these colours.
+    /// 256, 128, …, 4 levels per channel that leaves few enough; any other colour becomes the nearest of these.
     pub fn from_rgba(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
         let runs =
@@ -44,7 +44,7 @@ impl IndexedImage {
     }
 }
 
-/// The flat colours, and of the others the first on each of some levels per channel.
+/// The flat colours, and the first other colour on each of `levels` levels per channel.
 fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     let level = |channel: u8| (u32::from(channel) * levels + 127) / 255;
     let mut levels_seen = HashSet::new();
@@ -84,7 +84,7 @@ mod tests {
             palette.len() / 3
         );
         let of = |place: &u8| &palette[3 * usize::from(*place)..][..3];
-        let apart = |(place, own): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(own[k])).max();
+        let apart = |(place, pixel): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(pixel[k])).max();
         let farthest = pixels.iter().zip(rgba.chunks_exact(4)).filter_map(apart).max();
         // Eight levels per channel, each with its first colour.
         assert!(farthest.is_some_and(|apart| apart <= 36), "{farthest:?}");

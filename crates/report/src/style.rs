@@ -53,12 +53,12 @@ pub enum StyleError {
         range: [f64; 2],
     },
     /// A name that has no colour.
-    #[error("[colours] {name}: nothing has this name; expected one of {known}")]
+    #[error("[colours] {name}: nothing has this name; expected one of {valid}")]
     Name {
         /// Given name.
         name: String,
         /// All valid names.
-        known: String,
+        valid: String,
     },
     /// A value that is not a colour.
     #[error("[colours] {name} = \"{value}\": expected red, green and blue as in \"#0072B2\"")]
@@ -70,7 +70,8 @@ pub enum StyleError {
     },
     /// Two colours for two keys that share one.
     #[error(
-        "[colours] {name} = \"{value}\": it shares its colour with {other}, which is set to another one; set one of them"
+        "[colours] {name} = \"{value}\": it shares its colour with {other}, which is set to another one; set one of \
+         them"
     )]
     Shared {
         /// Key of the colour.
@@ -139,7 +140,7 @@ impl Style {
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(id, _)| id == name) else {
                 let ids: Vec<&str> = coloured().map(|(id, _)| id).collect();
-                return Err(StyleError::Name { name: name.clone(), known: ids.join(", ") });
+                return Err(StyleError::Name { name: name.clone(), valid: ids.join(", ") });
             };
             let wrong = || StyleError::Colour { name: name.clone(), value: text.clone() };
             let new = colour(text).ok_or_else(wrong)?;
@@ -191,30 +192,31 @@ mod tests {
             limits: [(String::from("rudder δ [°]"), [-90.0, 90.0])].into(),
             ..Style::default()
         };
-        let own = drawn(&style);
-        assert!(own.contains("font-size=\"300") && own.contains("stroke-width=\"54\""), "{own}");
-        assert!(own.contains("=\"#0072B2\"") && own.contains("=\"#010203\"") && !own.contains("=\"#D55E00\""));
-        assert!(own.contains("&quot;#D55E00&quot;"), "text is left alone");
-        assert!(own.contains("\n−60\n") || own.contains("\n−50\n") || own.contains("\n−80\n"), "{own}");
+        let styled = drawn(&style);
+        assert!(styled.contains("font-size=\"300") && styled.contains("stroke-width=\"54\""), "{styled}");
+        assert!(styled.contains("=\"#0072B2\"") && styled.contains("=\"#010203\"") && !styled.contains("=\"#D55E00\""));
+        assert!(styled.contains("&quot;#D55E00&quot;"), "text is left alone");
+        assert!(styled.contains("\n−60\n") || styled.contains("\n−50\n") || styled.contains("\n−80\n"), "{styled}");
     }
 
     #[test]
     fn what_is_wrong_is_named() {
         let of =
             |name: &str, colour: &str| Style { colours: [(name.into(), colour.into())].into(), ..Style::default() };
-        let said = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
+        let message = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
         assert!(
-            said(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
+            message(of("output-eror", "#000000"))
+                .contains("[colours] output-eror: nothing has this name; expected one")
         );
         for wrong in ["#00", "red", "#00000g", "#ééé"] {
-            assert!(said(of("ink", wrong)).contains(wrong), "{wrong}");
+            assert!(message(of("ink", wrong)).contains(wrong), "{wrong}");
         }
         let mut two = of("heading", "#000000");
         two.colours.insert("integral-least-squares".into(), "#FFFFFF".into());
-        assert!(said(two).contains("shares its colour with heading"));
+        assert!(message(two).contains("shares its colour with heading"));
         let size = Style { font_size_pt: Some(100.0), ..Style::default() };
-        assert_eq!(said(size), "font-size-pt = 100: expected a number from 4 to 30");
+        assert_eq!(message(size), "font-size-pt = 100: expected a number from 4 to 30");
         let limits = Style { limits: [("x".into(), [2.0, 1.0])].into(), ..Style::default() };
-        assert_eq!(said(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
+        assert_eq!(message(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
     }
 }

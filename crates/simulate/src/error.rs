@@ -36,10 +36,10 @@ pub enum Requirement {
     },
     /// Number of an execute, up to the number of the last execute.
     Execute(usize),
-    /// Key that depends on another key: value found, value expected, and advice.
-    Other([&'static str; 3]),
-    /// Value that depends on another value: value found, value expected, and advice.
-    Value([&'static str; 3]),
+    /// Presence that depends on another key: given value, expected value and advice.
+    OtherKey([&'static str; 3]),
+    /// Value that depends on another value: given value, expected value and advice.
+    OtherValue([&'static str; 3]),
 }
 
 impl fmt::Display for Requirement {
@@ -49,7 +49,9 @@ impl fmt::Display for Requirement {
             Self::Positive => write!(f, "a finite number above 0"),
             Self::NotNegative => write!(f, "a finite number, 0 or above"),
             Self::PositiveOrInfinite => write!(f, "a number above 0 (infinite is allowed)"),
-            Self::Between(low, high) => write!(f, "a number from {} to {}", scenario_number(*low), scenario_number(*high)),
+            Self::Between(low, high) => {
+                write!(f, "a number from {} to {}", scenario_number(*low), scenario_number(*high))
+            }
             Self::AtMost(limit) => write!(f, "at most {}", scenario_number(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
             Self::Steps { estimate, most } => {
@@ -67,7 +69,7 @@ impl fmt::Display for Requirement {
 pub struct SpecificationError {
     /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name if no scenario sets it.
     pub key: &'static str,
-    /// Value found, in the unit of its key; NaN if none was given.
+    /// Given value, in the unit of its key; NaN without a value.
     pub value: f64,
     /// Requirement, in the unit of its key.
     pub expected: Requirement,
@@ -85,7 +87,7 @@ impl SpecificationError {
         matches!(self.expected, Requirement::OtherKey(_)) || self.key == "vessel.dead_time"
     }
 
-    /// Message in the units of a scenario: value found, value expected, and advice.
+    /// Message in the units of a scenario: given value, expected value and advice.
     pub fn message_parts(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
         let problem = match expected {

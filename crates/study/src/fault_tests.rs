@@ -11,7 +11,7 @@ use campaign::NoObserver;
 use campaign::collect::{collect, collect_shard};
 use campaign::disk::faults;
 use campaign::failure::Failure;
-use campaign::files::{TIMINGS_FOLDER, MANIFEST_FILE, ROWS_FOLDER, TIMINGS_FILE};
+use campaign::files::{MANIFEST_FILE, ROWS_FOLDER, TIMINGS_FILE, TIMINGS_FOLDER};
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
 use campaign::shard::Shard;

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use campaign::failure::{FailureKind, Failure};
+use campaign::failure::{Failure, FailureKind};
 
 use crate::{failures, screen};
 

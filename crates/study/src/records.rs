@@ -248,7 +248,8 @@ pub fn late_rudder_message(late: f64) -> String {
 /// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
 /// record gives no validation.
 pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
-    let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
+    let is_in =
+        |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
     let twice =
         trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
     let in_both = held_out.iter().filter(|trial| is_in(trials, trial));

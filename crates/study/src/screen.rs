@@ -10,7 +10,7 @@ use report::Table;
 use report::printable::escaped;
 
 use crate::options::{CommonOptions, Format};
-use campaign::failure::{FailureKind, Failure};
+use campaign::failure::{Failure, FailureKind};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use ship::{Regressor, Response};
 use trial::{Channel, Trial};
 
-use crate::average::{ModelAverage, AveragedModel};
+use crate::average::{AveragedModel, ModelAverage};
 use crate::base::Base;
 use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, initial_states, replay_base};
@@ -27,9 +27,9 @@ use crate::location::locate;
 use crate::model::Term;
 use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
-use crate::residual_analysis::{Innovations, ResidualAnalysis, innovations, sums_of_squares};
 use crate::replay_errors::ReplayDepth;
 use crate::report;
+use crate::residual_analysis::{Innovations, ResidualAnalysis, innovations, sums_of_squares};
 use crate::rudder::{self, RudderNoise};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -38,7 +38,7 @@ use crate::structures::{self, Structures};
 use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
-/// Result of a trace: the document and the fits behind it.
+/// Result of a trace: document, base, weighted structures, noise law and replays.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// Document (`trace.json`).
@@ -173,7 +173,8 @@ fn analyse(
     let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut keeps_base) = compare(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let residual_analysis = ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
+    let residual_analysis =
+        ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
     let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
@@ -266,7 +267,7 @@ fn compare_fitted(
     let response = &base.estimate.response;
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
-        let record = PreparedRecord::whole(trial);
+        let record = PreparedRecord::with_all_rows(trial);
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
@@ -298,12 +299,12 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     keeps_base
 }
 
-/// Member of the structure average for predictions, without the terms of single records.
+/// Structure of the average with weight, response and covariance, without the terms of single records.
 #[derive(Debug, Clone)]
 pub struct PlausibleStructure {
     /// Probability among the members.
     pub weight: f64,
-    /// Response of the ship.
+    /// Response T r' + r = K (δ + δ_r) with the effects of the structure.
     pub response: Response,
     /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
@@ -363,6 +364,6 @@ impl Analysis {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
-        averaged.replay_on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
+        averaged.replay_on(trial, &PreparedRecord::with_all_rows(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

@@ -14,20 +14,20 @@ use crate::weights::NoiseLaw;
 /// Maximum ratio of the error of a replay to the median error; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Model average: ships with their posterior weights.
+/// Model average: ships, whose replays are averaged with their posterior weights.
 #[derive(Debug)]
 pub struct ModelAverage {
-    /// Weights, which sum to one, and ships.
+    /// Posterior weight and ship of every member; the weights sum to one.
     pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
 
 /// Members of a model average, with the noise law of the records.
 pub struct AveragedModel<'a> {
-    /// Structures with their weights.
+    /// Structures with their posterior weights.
     pub members: &'a [(f64, &'a StructureFit)],
     /// Hulls; each has the total weight of the structures.
     pub hulls: &'a [HullEstimate],
-    /// Noise law.
+    /// Noise law of the records.
     pub law: &'a NoiseLaw,
     /// Index of the replayed record among the fitted records; `None` for a record that was not fitted.
     pub fitted_record: Option<usize>,
@@ -35,7 +35,7 @@ pub struct AveragedModel<'a> {
     pub time: f64,
 }
 
-/// Replay of an average on a record.
+/// Replay of a model average on one record.
 #[derive(Debug, Clone)]
 pub struct AverageReplay {
     /// Full replay averaged over the members.

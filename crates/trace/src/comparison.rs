@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{ModelAverage, AverageReplay, AveragedModel};
+use crate::average::{AverageReplay, AveragedModel, ModelAverage};
 use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
@@ -164,7 +164,7 @@ impl AveragedModel<'_> {
     /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
     /// Fails if no replay is finite.
     pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
-        let record = PreparedRecord::whole(trial);
+        let record = PreparedRecord::with_all_rows(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
         let mut before = replay_base(trial, &record, base, depth)?;
         let mut starts = initial_states(trial, base);

@@ -21,20 +21,20 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingRule {
     /// Maximum number of steps.
-    pub steps: usize,
+    pub max_steps: usize,
     /// Predicted decrease of J below which the fit ends.
     pub min_decrease: f64,
 }
 
 impl StoppingRule {
-    /// Tolerance that suffices for a quadratic approximation of the posterior.
-    pub const COARSE: Self = Self { steps: 6, min_decrease: 0.5 };
-    /// Tolerance of a converged fit.
-    pub const FINE: Self = Self { steps: 15, min_decrease: 0.03 };
+    /// Rule that suffices for a quadratic approximation of the posterior.
+    pub const COARSE: Self = Self { max_steps: 6, min_decrease: 0.5 };
+    /// Rule of a converged fit.
+    pub const FINE: Self = Self { max_steps: 15, min_decrease: 0.03 };
 
     fn rules(self) -> SearchSettings {
         SearchSettings {
-            steps: self.steps,
+            max_steps: self.max_steps,
             damping: 1e-3,
             shrink: 0.1,
             trust_ratio: 0.5,
@@ -48,7 +48,7 @@ impl StoppingRule {
     }
 }
 
-/// Records of one joint fit.
+/// Prepared records of one joint fit, with their noise transitions.
 #[derive(Debug, Clone)]
 pub struct FittedRecords {
     /// Prepared records.
@@ -342,7 +342,7 @@ impl StructureFit {
         problem.fit(&self.structure.with_terms(terms), theta, self.initial.clone(), weights, effort)
     }
 
-    /// Covariance of all entries of θ, zero for fixed ones; `None` if the precision is singular.
+    /// Covariance of all entries of θ, zero for fixed entries; `None` if the precision is singular.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
         let covariance = self.structure.expanded_covariance(&inverse);

@@ -28,5 +28,5 @@ pub fn fit(
 
 /// Hulls refitted to other records under the same priors.
 pub fn refit(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
-    hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.expected).ok()).collect()
+    hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.prior).ok()).collect()
 }

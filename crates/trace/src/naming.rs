@@ -10,10 +10,10 @@ const MIN_PROBABILITY: f64 = 0.05;
 /// Maximum number of effects in a group.
 const MAX_GROUP_SIZE: usize = 3;
 
-/// Ratio of the allowed 1 − probability of a group to that of a single effect: a group is more often right by chance.
+/// Ratio of the allowed 1 − probability, group over single effect: a group is more often right by chance.
 const GROUP_DOUBT_RATIO: f64 = 0.6;
 
-/// Named effect, or group of effects of which one is present.
+/// Named effect, or group of effects that the records cannot separate, with its probability.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectNaming {
     /// Most probable form of the effect.
@@ -34,7 +34,7 @@ impl EffectNaming {
     }
 }
 
-/// Identifier of an effect, with the one record in which it acts.
+/// Identifier of an effect with the index of its record; `None` for all records.
 type EffectKey = (&'static str, Option<usize>);
 
 /// Named effects, the most probable first: above the threshold, requested, or in a group above it.
@@ -62,8 +62,8 @@ pub fn named_effects(structures: &Structures, threshold: f64, selection: &Select
 }
 
 /// Effect in its most probable form, without aliases.
-fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64) -> EffectNaming {
-    let is_form = |name: &&TermName| name.0 == id && name.2 == only;
+fn named_effect(structures: &Structures, (id, record): EffectKey, probability: f64) -> EffectNaming {
+    let is_form = |name: &&TermName| name.0 == id && name.2 == record;
     let mut forms: Vec<(TermName, f64)> =
         structures.probabilities.keys().filter(is_form).map(|name| (*name, structures.probabilities[name])).collect();
     forms.sort_by(|(a, p), (b, q)| q.total_cmp(p).then(a.cmp(b)));

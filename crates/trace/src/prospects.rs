@@ -1,7 +1,6 @@
 //! Value of a planned trial: the aliases it would separate and the unobservable effects it would reveal.
 //!
-//! The expected posterior covariance of the full model is that of a Gaussian experiment design (Chaloner and Verdinelli
-//! 1995).
+//! Expected posterior covariance of the full model: Gaussian experiment design (Chaloner and Verdinelli 1995).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,11 +28,11 @@ pub struct Prospect {
     pub name: String,
     /// Pairs (named effect, alias) that the records and this trial together would separate.
     pub separated: Vec<[String; 2]>,
-    /// Pairs that they would not separate.
+    /// Pairs (named effect, alias) that would stay inseparable.
     pub inseparable: Vec<[String; 2]>,
     /// Unobservable effects that this trial would reveal.
     pub revealed: Vec<String>,
-    /// Unobservable effects that it would not reveal.
+    /// Effects that would stay unobservable.
     pub unobservable: Vec<String>,
     /// Σ log(1 + visibility) over all candidates; ranks trials that separate and reveal equally many.
     pub information: f64,

@@ -159,8 +159,8 @@ impl TraceParts<'_> {
         self.trials.iter().find_map(Trial::particulars)
     }
 
-    fn only(&self, only: Option<usize>) -> Option<String> {
-        only.map(|number| self.trials[number].name().to_owned())
+    fn record_name(&self, record: Option<usize>) -> Option<String> {
+        record.map(|number| self.trials[number].name().to_owned())
     }
 
     fn equation(&self, id: &str, form: &str) -> &'static str {
@@ -203,16 +203,22 @@ impl TraceParts<'_> {
             true => quantity(NormalMixture { components: parts }.summary()),
             false => Quantity::without_uncertainty(parts[0].1),
         };
-        self.number(entry.parameter, quantity, entry.only, entry.is_at_bound(fitted))
+        self.number(entry.parameter, quantity, entry.record, entry.is_at_bound(fitted))
     }
 
-    fn number(&self, parameter: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
+    fn number(
+        &self,
+        parameter: &Parameter,
+        quantity: Quantity,
+        record: Option<usize>,
+        at_bound: bool,
+    ) -> ParameterEntry {
         let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
             quantity: quantity.scaled(ship.prime_factor(parameter.dimension())),
             unit: prime_unit(parameter.unit),
         });
         let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
-        ParameterEntry { key, symbol, quantity, unit, prime, only: self.only(only), at_bound }
+        ParameterEntry { key, symbol, quantity, unit, prime, only: self.record_name(record), at_bound }
     }
 
     /// Parameters of a term, averaged over the structures that have it.
@@ -237,8 +243,8 @@ impl TraceParts<'_> {
 
     fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
         let entry = |naming: &EffectNaming| {
-            let (id, form, only) = naming.term;
-            let support = self.structures.effect_evidence(id, only);
+            let (id, form, record) = naming.term;
+            let support = self.structures.effect_evidence(id, record);
             let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
@@ -247,7 +253,7 @@ impl TraceParts<'_> {
                 id: id.into(),
                 form: form.into(),
                 equation: self.equation(id, form).into(),
-                only: self.only(only),
+                only: self.record_name(record),
                 required: asked,
                 alias_forms,
                 parameters: self.term_parameters(naming.term),
@@ -335,7 +341,7 @@ impl TraceParts<'_> {
     }
 
     fn form(&self, name: TermName, named: &[EffectNaming]) -> FormEntry {
-        let (_, form, only) = name;
+        let (_, form, record) = name;
         let visibility = self.structures.visibility.get(&name).copied();
         let outcome = if named.iter().any(|naming| naming.term == name) {
             Outcome::Added
@@ -349,7 +355,7 @@ impl TraceParts<'_> {
         let support = self.structures.support.get(&name);
         FormEntry {
             form: form.into(),
-            only: self.only(only),
+            only: self.record_name(record),
             outcome,
             probability: self.structures.probabilities.get(&name).map_or(0.0, |weight| weight.clamp(0.0, 1.0)),
             delta_bic: support.map(|support| -2.0 * support.gain.clamp(-1e6, 1e6)),
@@ -358,8 +364,8 @@ impl TraceParts<'_> {
         }
     }
 
-    fn term(&self, (id, form, only): TermName) -> TermEntry {
-        TermEntry { id: id.into(), form: form.into(), only: self.only(only) }
+    fn term(&self, (id, form, record): TermName) -> TermEntry {
+        TermEntry { id: id.into(), form: form.into(), only: self.record_name(record) }
     }
 
     fn listed(&self) -> Vec<StructureEntry> {
@@ -381,7 +387,8 @@ impl TraceParts<'_> {
             horizons: Vec::new(),
         };
         let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
-        let leave_one_out = self.trials.iter().zip(self.leave_one_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
+        let leave_one_out =
+            self.trials.iter().zip(self.leave_one_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
         ErrorEntry {
             kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
                 (false, _) => Some(sentences::NO_NAMED_EFFECT_REASON.into()),
@@ -425,7 +432,8 @@ impl TraceParts<'_> {
                 file: sentences::record_label(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
-                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest_duration())),
+                heading_correlation_s: heading
+                    .and_then(|(kind, _)| kind.correlation_time(self.problem.longest_duration())),
                 heading_wander: heading
                     .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,

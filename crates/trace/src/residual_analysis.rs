@@ -1,4 +1,4 @@
-//! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on the remainder.
+//! Residual analysis of the fitted records: whiteness and bands under the noise law, and its verdict.
 
 use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness_test};
 use trial::Trial;
@@ -9,8 +9,8 @@ use crate::full::FullModel;
 use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
-use crate::rudder::RudderNoise;
 use crate::residual_peak::{ResidualPeak, residual_peak};
+use crate::rudder::RudderNoise;
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
@@ -40,7 +40,7 @@ impl Innovations {
     }
 }
 
-/// Judgement of the residual that the structures leave: noise, credible, or unexplained.
+/// Residual analysis of the structures: noise, credible, or unexplained residual (Ljung 1999, chapter 16).
 #[derive(Debug, Clone)]
 pub struct ResidualAnalysis {
     /// `true` if the noise law describes the residual and its bands cover the records.
@@ -110,7 +110,7 @@ fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) 
     Some(residual_peak(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
-/// Innovations at the same times with other values.
+/// Innovations at the same times with the given values.
 fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
     all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use estimation::subsets::{RemovableTerm, conditional_mean};
 use rayon::prelude::*;
 
-use crate::candidates::{is_delay, is_alternative_form};
+use crate::candidates::{is_alternative_form, is_delay};
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
@@ -320,7 +320,7 @@ impl StructureSearch<'_> {
     /// Structures with their weights, the probabilities of the terms and their support.
     fn result(self) -> Structures {
         let terms = &self.full.fit.structure.terms;
-        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.only)).collect();
+        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record)).collect();
         let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
         let support = terms.iter().map(|term| term.name()).zip(support).collect();
         let visibility = self.visibility;

@@ -1,8 +1,8 @@
 //! Observer of the leave-one-out folds of a long analysis.
 
-/// Observer of an analysis of several records: its leave-one-out folds take long after the main result is known.
+/// Observer of the leave-one-out folds of an analysis of several records, which follow its main result.
 pub trait Watcher: Sync {
-    /// Start of `_count` leave-one-out folds, after the main result is known.
+    /// Start of `_count` leave-one-out folds, after the main result.
     fn begin_folds(&self, _count: usize) {}
 
     /// End of one fold.

@@ -12,7 +12,7 @@ use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::wording::{counted, rounded_to_thousandth};
 
-/// Minimum rudder angle of an impossible reading, rad.
+/// Minimum magnitude of an impossible rudder angle, rad.
 pub(crate) const MIN_IMPOSSIBLE_RUDDER_RAD: f64 = 1.6;
 
 /// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not a single reading.
@@ -33,7 +33,7 @@ const MIN_READ_SHARE: f64 = 0.8;
 /// Minimum share of changes in step with the rhythm of a channel.
 const MIN_IN_STEP_SHARE: f64 = 0.97;
 
-/// Maximum probability that separate movements share a rhythm by chance; a movement at a steady rate has its own.
+/// Maximum probability that separate movements share a rhythm by chance; a steady movement has a rhythm.
 const MAX_CHANCE: f64 = 2e-3;
 
 /// Minimum number of rows of a frozen heading.
@@ -112,7 +112,7 @@ fn ordinal(number: usize) -> String {
     format!("{number}{ending}")
 }
 
-/// Adds the readings of some rows to `rejected` and returns up to six of their times, for a message.
+/// Adds the readings of these rows to `rejected` and returns up to six of their times, for a message.
 fn reject(
     channel: Channel,
     time: &[f64],

@@ -14,7 +14,7 @@ pub const MIN_DEPTH_DRAUGHTS: f64 = 4.0;
 pub const MAX_BEAUFORT: u8 = 5;
 /// Maximum sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const MAX_SEA_STATE: u8 = 4;
-/// Tolerance of the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
+/// Maximum deviation from the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
 pub const MAX_DRAUGHT_DEVIATION_SHARE: f64 = 0.05;
 /// Maximum interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
 pub const MAX_READING_INTERVAL_S: f64 = 20.0;

@@ -157,7 +157,7 @@ impl Manoeuvre {
         Self::Replay { file: String::new(), rudder: Some(rudder) }
     }
 
-    /// The same zig-zag until an execute, counted from 1; n executes give n − 2 complete overshoots.
+    /// Zig-zag that ends at an execute, counted from 1; n executes give n − 2 complete overshoots.
     pub fn until_execute(mut self, number: usize) -> Self {
         if let Self::ZigZag { executes, .. } = &mut self {
             *executes = Some(number);
@@ -165,7 +165,7 @@ impl Manoeuvre {
         self
     }
 
-    /// The same zig-zag or turning circle until a time after its first execute, s.
+    /// Zig-zag or turning circle that ends a time after its first execute, s.
     pub fn lasting(mut self, time: f64) -> Self {
         if let Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. } = &mut self {
             *duration = Some(time);
@@ -278,7 +278,7 @@ impl Manoeuvre {
         }
     }
 
-    /// The same manoeuvre with its first execute to a side; a replay and a spiral are unchanged.
+    /// Manoeuvre with its first execute to the given side; a replay and a spiral are unchanged.
     pub fn with_first_side(mut self, first_side: Side) -> Self {
         match &mut self {
             Self::ZigZag { first: side, .. }

@@ -303,7 +303,7 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
 /// Maximum interval between two headings without a missing heading, usual intervals.
 const MAX_INTERVAL: f64 = 1.5;
 
-/// Warning of missing headings with their maximum gap; rejected readings have a warning of their own.
+/// Warning of missing headings with their maximum gap; rejected readings have a separate warning.
 fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
     let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;

@@ -145,9 +145,7 @@ fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
             TrialError::Rudder { row }
         }
         SignalError::Point { index: row, before, time, .. } => TrialError::Time { row, before, time },
-        SignalError::Empty | SignalError::Lengths { .. } => {
-            TrialError::TooShort { needed: Trial::MIN_ROWS, rows }
-        }
+        SignalError::Empty | SignalError::Lengths { .. } => TrialError::TooShort { needed: Trial::MIN_ROWS, rows },
     })
 }
 

@@ -33,7 +33,7 @@ pub(crate) enum ColumnReference {
     Index(usize),
     /// Name in the header.
     Name(String),
-    /// New column, computed from others.
+    /// New column, computed from existing columns.
     Formula(ColumnFormula),
 }
 

@@ -180,7 +180,7 @@ impl Naming {
         }
     }
 
-    /// Correctness of the named groups, if `missing` is the one missing effect, or none.
+    /// Correctness of the named groups for the `missing` effect, or for none.
     pub fn from_named_effects(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
         let holder = named.iter().find(|group| group.iter().any(|id| id == missing));

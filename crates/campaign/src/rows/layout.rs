@@ -102,7 +102,7 @@ impl RowLayout {
         parquet_table::schema(fields.collect())
     }
 
-    /// `true` if the values of a column repeat often enough for dictionary encoding; those of estimates do not.
+    /// `true` if the values of a column repeat often enough for dictionary encoding, unlike estimates.
     pub(super) fn is_dictionary_encoded(name: &str) -> bool {
         let text = [
             "method",

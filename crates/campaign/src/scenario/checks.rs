@@ -7,7 +7,7 @@ use crate::scenario::draw::DrawWire;
 use crate::scenario::limits;
 use crate::scenario::method::Method;
 use crate::scenario::name::{self, MAX_NAME_BYTES};
-use crate::scenario::problem::{KeyFault, KeyPath, text_fault, choice_index};
+use crate::scenario::problem::{KeyFault, KeyPath, choice_index, text_fault};
 use crate::scenario::prose::{Highlight, MarkedValue};
 use crate::scenario::sweep::SweepAxis;
 
@@ -80,7 +80,7 @@ pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     Ok(())
 }
 
-/// Checks that every title of `output.detail` is that of a cell.
+/// Checks that every title of `output.detail` names a cell.
 pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     let cell_titles: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
     let places: HashSet<&str> = cell_titles.iter().map(String::as_str).collect();
@@ -101,7 +101,12 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::from_dotted("output.marks").child(index);
-        choice_index(&mark.axis, &axis_names, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
+        choice_index(
+            &mark.axis,
+            &axis_names,
+            key.child("axis"),
+            ["no axis is called", "expected the name of a sweep"],
+        )?;
         if !mark.value.is_finite() {
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.value), "expected a number", advice));
@@ -111,7 +116,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     Ok(())
 }
 
-/// Checks that every highlighted name is that of a method, of a point of a sweep or of a cell.
+/// Checks that every highlighted name belongs to a method, a point of a sweep or a cell.
 pub fn highlight(
     Highlight { series, rows, .. }: &Highlight,
     methods: &[Method],

@@ -34,9 +34,9 @@ pub enum Procedure {
         /// Method with its settings.
         identifier: Arc<dyn Identifier>,
     },
-    /// Finds what a first-order response lacks.
+    /// Traces the effects missing from a first-order response.
     Trace(::trace::Settings),
-    /// Looks up the estimates of an outside estimator.
+    /// Estimates of an outside estimator, by trial.
     OutsideEstimates(Arc<OutsideEstimates>),
     /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
@@ -211,7 +211,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFaul
 /// Fault of a refused setting, at its key.
 fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
-    KeyFault::new(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
+    KeyFault::new(key, &error.value, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
 /// Settings of a trace, without restarted replays and proposals, which a study does not use.

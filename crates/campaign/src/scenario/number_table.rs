@@ -1,4 +1,4 @@
-//! Tables of numbers, such as those of an effect or of a user's ship. Their keys are data, with which they are checked,
+//! Tables of numbers, as of an effect or of a user's ship. Their keys are data, with which they are checked,
 //! completed and described in the schema.
 
 use std::collections::BTreeMap;

@@ -18,7 +18,7 @@ pub struct OutsideEstimates {
 }
 
 impl OutsideEstimates {
-    /// Outside estimates, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
+    /// Outside estimates, or reasons for missing estimates, with the SHA-256 of their source, which identifies them.
     pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }

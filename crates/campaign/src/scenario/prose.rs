@@ -160,8 +160,8 @@ mod tests {
         let schema = schemars::schema_for!(Presentation);
         let keys = schema.as_value()["properties"].as_object().expect("a table");
         assert!(keys.keys().eq(Presentation::KEYS), "{keys:?}");
-        let words =
+        let prose =
             Prose::from_scenario_text("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
-        assert_eq!((words.question.as_str(), words.output.figure.as_deref()), ("Which?", Some("errors")));
+        assert_eq!((prose.question.as_str(), prose.output.figure.as_deref()), ("Which?", Some("errors")));
     }
 }

@@ -174,7 +174,7 @@ impl de::Error for ReadFault {
 }
 
 impl ReadFault {
-    /// Fault at a key with its value; without a value, that of the whole document.
+    /// Fault at a key with its value; without a value, fault of the whole document.
     fn at(self, key: KeyPath, value: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.names() {
             [] => "a scenario".to_owned(),

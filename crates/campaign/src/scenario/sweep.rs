@@ -176,8 +176,9 @@ impl AxisWire {
 
     /// Points as listed, or spread over a range.
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
-        let single =
-            |key: &str, value: Value, value_place: KeyPath| SweepPoint::from_value(key, value, place.child("key"), value_place);
+        let single = |key: &str, value: Value, value_place: KeyPath| {
+            SweepPoint::from_value(key, value, place.child("key"), value_place)
+        };
         let spread = |key: &str, values: Vec<f64>, how: &str| -> Vec<SweepPoint> {
             values.into_iter().map(|value| single(key, Value::Float(value), place.child(how))).collect()
         };

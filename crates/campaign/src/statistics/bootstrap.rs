@@ -7,10 +7,10 @@ use rand::{RngExt, SeedableRng};
 use super::statistic::{MIN_INTERVAL_VALUES, Statistic};
 use super::sums::BatchSums;
 
-/// Number of resamples, sufficient for the 2.5 and 97.5 % points to two digits.
+/// Number of bootstrap resamples, sufficient for the 2.5 and 97.5 % points to two digits.
 pub const RESAMPLE_COUNT: usize = 1000;
 
-/// Fixed seed, so that equal rows give equal intervals.
+/// Fixed seed of the bootstrap, so that equal rows give equal intervals.
 pub const BOOTSTRAP_SEED: u64 = 1979;
 
 /// Multiplicity of each batch in each resample.

@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-use super::bootstrap::{RESAMPLE_COUNT, BOOTSTRAP_SEED};
+use super::bootstrap::{BOOTSTRAP_SEED, RESAMPLE_COUNT};
 use super::statistic::MIN_INTERVAL_VALUES;
 
 /// Values of `compute` on the cases of each resample of clusters.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::statistic::{MIN_INTERVAL_VALUES, Statistic, NORMAL_QUANTILE_95};
+use super::statistic::{MIN_INTERVAL_VALUES, NORMAL_QUANTILE_95, Statistic};
 
 /// Maximum number of exact values.
 const MAX_EXACT_VALUES: usize = 8192;

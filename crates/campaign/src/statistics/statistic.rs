@@ -25,7 +25,7 @@ impl Statistic {
     }
 }
 
-/// Two-sided 95 % quantile of the standard normal distribution.
+/// Two-sided 95 % quantile of the standard normal distribution, 1.96.
 pub const NORMAL_QUANTILE_95: f64 = 1.959_963_984_540_054;
 
 /// Minimum number of values for an interval: below it no pair of order statistics covers the median with 95 %.

@@ -3,7 +3,7 @@
 
 use std::iter::Sum;
 
-/// Number of batches.
+/// Number of batches of the bootstrap.
 pub const BATCH_COUNT: usize = 256;
 
 /// Sums over the values of one batch.
@@ -114,13 +114,13 @@ impl PairSums {
         self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
     }
 
-    /// Root mean square error of the method minus that of the reference in a total of batches; `None` without trials.
+    /// Difference of the root mean square errors, method minus reference, in a total of batches; `None` without trials.
     pub fn rms_difference(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Root mean square error of the method over that of the reference in a total of batches; `None` if the latter is
-    /// zero.
+    /// Ratio of the root mean square errors, method over reference, in a total of batches; `None` for a reference
+    /// of zero.
     pub fn rms_ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }

@@ -33,7 +33,7 @@ pub struct PredictionSummary {
 /// Nominal coverage of the intervals.
 const NOMINAL: f64 = 0.9;
 
-/// Factors by which intervals are scaled about the median to find the one that they lack: 1/8 to 32 in steps of 9 %.
+/// Factors of intervals about the median, among which the factor of nominal coverage is sought: 1/8 to 32, 9 % apart.
 static INTERVAL_SCALES: LazyLock<[f64; 65]> =
     LazyLock::new(|| array::from_fn(|place| ((place as f64 - UNSCALED as f64) / 8.0).exp2()));
 
@@ -59,20 +59,20 @@ pub struct ConformalScaling {
 }
 
 impl ConformalScaling {
-    /// Scaling of the `judged` predictions by the factor of the `others`, every figure with the same weight.
+    /// Scaling of `predictions` by the factor of the `calibration` predictions, every figure with the same weight.
     ///
     /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
     /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
-    pub fn from_calibration(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
+    pub fn from_calibration(predictions: &[&PredictionSummary], calibration: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
             lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
         };
-        let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(others, *place) >= NOMINAL)?;
+        let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(calibration, *place) >= NOMINAL)?;
         let relative = |line: &&PredictionSummary, place: usize| line.relative(line.mean_score(place));
-        let score = |place| median(&mut judged.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
+        let score = |place| median(&mut predictions.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
         Some(Self {
             factor: INTERVAL_SCALES[place],
-            coverage: [UNSCALED, place].map(|place| coverage(judged, place)),
+            coverage: [UNSCALED, place].map(|place| coverage(predictions, place)),
             score: [score(UNSCALED)?, score(place)?],
         })
     }

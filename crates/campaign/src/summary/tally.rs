@@ -11,7 +11,9 @@ use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::scenario::MethodName;
-use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, NORMAL_QUANTILE_95, wilson_share};
+use crate::statistics::{
+    BATCH_COUNT, ErrorSample, ErrorSums, NORMAL_QUANTILE_95, PairSums, Resamples, Statistic, wilson_share,
+};
 
 /// Reference method, if a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
@@ -181,14 +183,14 @@ fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
 #[derive(Debug, Clone, Default)]
 struct MethodTally {
     trials: u64,
-    /// Number of batches with a trial, failed ones included.
+    /// Number of batches with a trial, failed trials included.
     batches: usize,
     failures: Vec<(String, u64)>,
     /// Error sums of K, T and K/T.
     indices: [IndexSums; 3],
     /// Errors of K and T on the current trial, %.
     latest: [Option<f64>; 2],
-    /// Sums of the errors of K and T with those of the reference.
+    /// Paired sums of the errors of K and T, method and reference.
     pairs: [PairSums; 2],
     heading: ErrorSample,
     validation: ErrorSample,
@@ -204,7 +206,7 @@ const MAX_REASONS: usize = 50;
 impl MethodTally {
     fn add(&mut self, row: &StudyRow, errors: &[Option<f64>; 3]) {
         self.trials += 1;
-        self.batches = self.batches.max((row.replicate as usize % BATCHES) + 1);
+        self.batches = self.batches.max((row.replicate as usize % BATCH_COUNT) + 1);
         if let Some(reason) = row.failure.as_deref() {
             self.failed(reason);
         }

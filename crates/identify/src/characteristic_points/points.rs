@@ -36,7 +36,7 @@ pub enum BaseCourseOrigin {
 
 /// Characteristic point of a record; the heading is relative to the base course.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct CharacteristicPoint {
     /// Time, s.
     pub time: f64,
     /// Heading, rad.
@@ -49,11 +49,11 @@ pub struct Point {
 
 /// Characteristic points of one trial.
 #[derive(Debug, Clone)]
-pub struct Points {
+pub struct TrialPoints {
     /// Points with r = 0 in order of time; a start at rest is the first point.
-    pub zero_rate_points: Vec<Point>,
+    pub zero_rate_points: Vec<CharacteristicPoint>,
     /// Passages of the base course in order of time.
-    pub crossings: Vec<Point>,
+    pub crossings: Vec<CharacteristicPoint>,
     /// `true` if the record starts at rest, so that the first of `zero_rate_points` is the execute and no extremum.
     pub from_rest: bool,
     /// Base course, rad.
@@ -64,9 +64,9 @@ pub struct Points {
     pub half_width: f64,
 }
 
-impl Points {
+impl TrialPoints {
     /// Heading extrema, without a start at rest.
-    pub fn extrema(&self) -> &[Point] {
+    pub fn extrema(&self) -> &[CharacteristicPoint] {
         &self.zero_rate_points[usize::from(self.from_rest)..]
     }
 
@@ -95,9 +95,13 @@ impl Points {
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
         let half_width =
             half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
-        let point =
-            |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
-        let mut zero_rate_points: Vec<Point> = points::extrema(time, &off_course, half_width)
+        let point = |time, heading, rate| CharacteristicPoint {
+            time,
+            heading,
+            rate,
+            rudder_integral: rudder_integral(samples, time),
+        };
+        let mut zero_rate_points: Vec<CharacteristicPoint> = points::extrema(time, &off_course, half_width)
             .into_iter()
             .map(|[at, heading]| {
                 let (at, heading) = centred(time, &off_course, half_width, at).unwrap_or((at, heading));

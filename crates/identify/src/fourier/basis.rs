@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::curve::FourierSeries;
-use super::nodes::{dot, has_even_steps};
+use super::folded_rows::{dot, has_even_steps};
 use crate::error::IdentifyError;
 
 /// Nested bases with 0, 1, .. N harmonics of one fundamental on given instants: leading columns of one design matrix X

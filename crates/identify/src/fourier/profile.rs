@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 
-use super::nodes::{LANES, FoldedRows, lanes};
+use super::folded_rows::{FoldedRows, LANES, lanes};
 
 /// Minimum pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
 /// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots consist of error and false
@@ -214,7 +214,7 @@ fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }
 
-/// Sums over `nodes` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
+/// Sums over `folded_rows` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
 fn accumulate(nodes: &FoldedRows, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
     sums.fill(Sums::default());
     for start in (0..nodes.time.len()).step_by(LANES) {

@@ -85,8 +85,8 @@ pub fn sample_triples(
     seed: u64,
 ) -> Result<SampledTriples, IdentifyError> {
     if instants.len() < 3 {
-        let what = "instants with the rudder at rest";
-        return Err(IdentifyError::TooFewPoints { what, needed: 3, count: instants.len() });
+        let kind = "instants with the rudder at rest";
+        return Err(IdentifyError::TooFewPoints { kind, needed: 3, count: instants.len() });
     }
     let scale = [standard_deviation(instants, |i| i.yaw_acceleration), standard_deviation(instants, |i| i.rudder)];
     let mut generator = ChaCha8Rng::seed_from_u64(seed);

@@ -145,7 +145,7 @@ fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
 
 fn left_by(estimate: &HullEstimate) -> EarlierHull {
     EarlierHull {
-        form: estimate.expected.form.clone(),
+        form: estimate.prior.form.clone(),
         particulars: SHIP,
         values: estimate.values.clone(),
         covariance: estimate.covariance.clone(),
@@ -160,7 +160,7 @@ fn quadratic(all: &[EarlierHull]) -> HullFormPrior {
 fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
     let track = |trial: &Trial| HullTrack::from_trial(trial, &estimate.reference).expect("a record");
     let tracks: Vec<HullTrack> = others.iter().map(track).collect();
-    let mut problem = HullObjective::new(&estimate.expected, &tracks);
+    let mut problem = HullObjective::new(&estimate.prior, &tracks);
     let left = problem.misfits(estimate.values.as_slice()).expect("a ship");
     left.iter().map(|own| own.whole).sum::<f64>() / left.len() as f64
 }

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
-use super::expected::HullFormPrior;
+use super::form_prior::HullFormPrior;
 use super::replayed::{ReplayedWindow, replay_rows};
 use super::track::HullTrack;
 use super::turn::HardTurn;
@@ -35,8 +35,7 @@ pub struct ResidualDeviations {
 }
 
 /// Minimum deviations of a record.
-const MIN_DEVIATIONS: ResidualDeviations =
-    ResidualDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+const MIN_DEVIATIONS: ResidualDeviations = ResidualDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search, so large that the hull stays near its prior.
 const FIRST_DEVIATIONS: ResidualDeviations =
@@ -60,7 +59,7 @@ struct Starts {
 
 /// Objective of the fit of a form with its priors to records.
 pub(super) struct HullObjective<'a> {
-    expected: &'a HullFormPrior,
+    prior: &'a HullFormPrior,
     tracks: &'a [HullTrack],
     deviations: Vec<ResidualDeviations>,
     starts: Vec<Starts>,
@@ -162,18 +161,18 @@ pub(super) fn window_mean_square(
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(expected: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
-        assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
+    pub fn new(prior: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
+        assert!(prior.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST_DEVIATIONS; tracks.len()];
-        Self { expected, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
+        Self { prior, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
     /// Mean square residuals of every record; `None` if the coefficients are not valid.
     pub fn misfits(&mut self, at: &[f64]) -> Option<Vec<Misfit>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
-        let hull = self.expected.form.with_coefficients(&values)?;
+        let hull = self.prior.form.with_coefficients(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
         let misfit = |(track, starts): (&HullTrack, &mut Starts)| {
             let mut misfit = Misfit::default();
@@ -210,8 +209,8 @@ impl<'a> HullObjective<'a> {
 
     /// Gradient Λ (μ − θ) and value (θ − μ)ᵀ Λ (θ − μ) of the prior.
     fn prior_terms(&self, at: &[f64]) -> (DVector<f64>, f64) {
-        let departure = self.expected.mean() - DVector::from_column_slice(at);
-        let pull = &self.expected.precision * &departure;
+        let departure = self.prior.mean() - DVector::from_column_slice(at);
+        let pull = &self.prior.precision * &departure;
         let square = pull.dot(&departure);
         (pull, square)
     }
@@ -219,13 +218,13 @@ impl<'a> HullObjective<'a> {
 
 impl Objective for HullObjective<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        self.expected.coefficients[unknown].ends
+        self.prior.coefficients[unknown].ends
     }
 
     /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard
     /// over.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with_coefficients(at)) else {
+        let (Some(misfits), Some(hull)) = (self.misfits(at), self.prior.form.with_coefficients(at)) else {
             return f64::INFINITY;
         };
         let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &ResidualDeviations)| {
@@ -241,10 +240,10 @@ impl Objective for HullObjective<'_> {
 
     fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
         let value = self.value(at);
-        *normal = NormalEquations { matrix: self.expected.precision.clone(), gradient: self.prior_terms(at).0 };
+        *normal = NormalEquations { matrix: self.prior.precision.clone(), gradient: self.prior_terms(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-        let Some(hull) = self.expected.form.with_coefficients(&values) else { return f64::INFINITY };
+        let Some(hull) = self.prior.form.with_coefficients(&values) else { return f64::INFINITY };
         for departure in self.turn.departures(&hull) {
             let by = DVector::from_column_slice(&departure.derivatives[..at.len()]);
             normal.matrix.ger(1.0, &by, &by, 1.0);
@@ -322,19 +321,19 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 /// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
 /// coefficients are not valid.
 pub(super) fn heading_variances(
-    expected: &HullFormPrior,
+    prior: &HullFormPrior,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(expected, std::slice::from_ref(track)).misfits(values)?[0].initial_yaw_rate;
+    let rate = HullObjective::new(prior, std::slice::from_ref(track)).misfits(values)?[0].initial_yaw_rate;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
     let ReplayedWindow { rows, .. } =
-        replay_rows(&expected.form.with_coefficients(&variables)?, track, track.whole, start);
+        replay_rows(&prior.form.with_coefficients(&variables)?, track, track.whole, start);
     let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;

@@ -98,7 +98,10 @@ pub(super) struct Solution {
 
 impl Solution {
     /// Solution of the equations; the rows of the pieces stay projected.
-    pub(super) fn from_stretches(pieces: &mut [IntegratedStretch], condition_limit: f64) -> Result<Self, IdentifyError> {
+    pub(super) fn from_stretches(
+        pieces: &mut [IntegratedStretch],
+        condition_limit: f64,
+    ) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {
             piece.project(&mut lengths, &mut products);

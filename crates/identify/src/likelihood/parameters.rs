@@ -22,15 +22,15 @@ pub struct NoiseVector {
     pub log: [f64; NOISE_ENTRIES],
 }
 
-/// Index of q/σ.
+/// Index of log(q/σ) in a noise vector.
 pub const LEVEL_INDEX: usize = 0;
-/// Index of τ.
+/// Index of log τ.
 pub const CORRELATION_INDEX: usize = 1;
-/// Index of the rudder error.
+/// Index of the logarithm of the rudder error.
 pub const RUDDER_INDEX: usize = 2;
-/// Index of the correlation time of the compass error.
+/// Index of the log correlation time of the compass error.
 pub const COMPASS_INDEX: usize = 3;
-/// Index of σ_r/σ.
+/// Index of log(σ_r/σ).
 pub const GYRO_INDEX: usize = 4;
 
 impl NoiseVector {

@@ -284,7 +284,9 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         }
         let restricted = |point: &Point| point.restricted;
         let start = match kind {
-            MomentKind::None if none[0].rudder => search.best_start(search.entry_starts(a, &none, RUDDER_INDEX), restricted),
+            MomentKind::None if none[0].rudder => {
+                search.best_start(search.entry_starts(a, &none, RUDDER_INDEX), restricted)
+            }
             MomentKind::None => search.evaluate(a, &none),
             MomentKind::White | MomentKind::Walk => {
                 search.best_level(search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))

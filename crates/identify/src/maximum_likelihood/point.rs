@@ -58,7 +58,7 @@ struct RecordColumns {
 #[derive(Debug, Clone)]
 pub(super) struct WhitenedColumns {
     pub filter: Whitener,
-    /// Triangular factor from the orthonormal columns to those of the initial state and the jumps.
+    /// Triangular factor R of the nuisance columns Q R of the initial state and the jumps.
     triangle: DMatrix<f64>,
     pub projected: [Vec<f64>; 3],
     /// Derivatives of [`RecordColumns`], projected off the nuisance columns.
@@ -134,7 +134,7 @@ impl Record {
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// Columns of a ship with this 1/T; those of the last 1/T are kept.
+    /// Columns of a ship with this 1/T; the columns of the last 1/T are cached.
     fn columns(&self, inverse_time: f64) -> Rc<RecordColumns> {
         let mut last = self.last_columns.borrow_mut();
         if let Some(columns) = last.as_ref().filter(|columns| columns.is_of(self, inverse_time)) {

@@ -84,7 +84,7 @@ pub(super) struct Search<'a> {
     pub unseen: Vec<(MomentKind, f64)>,
 }
 
-/// Maximum of the likelihood that a search found.
+/// Result of a search: maximum of the likelihood with its derivatives.
 pub(super) struct Maximum {
     pub point: Point,
     pub derivatives: ScoreAndInformation,

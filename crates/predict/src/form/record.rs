@@ -31,7 +31,7 @@ pub struct FormRecord<'a> {
 }
 
 impl FormRecord<'_> {
-    /// Loading of the ship; a record with a correction was at partial load, whatever it declares.
+    /// Loading of the ship; a corrected record was at partial load, even if it declares full load.
     pub(crate) fn loading(&self) -> Option<Loading> {
         self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
     }

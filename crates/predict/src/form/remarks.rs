@@ -52,7 +52,8 @@ fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
     let names =
         [(ZIG_ZAG_10_10, "10/10 zig-zag"), (ZIG_ZAG_20_20, "20/20 zig-zag"), (TURNING_CIRCLE_35, "turning circle")];
     let missing = |(manoeuvre, name): (&'static str, &str)| {
-        let done = ["port", "starboard"].map(|side| tested.iter().any(|test| test.matches(manoeuvre, side)).then_some(side));
+        let done =
+            ["port", "starboard"].map(|side| tested.iter().any(|test| test.matches(manoeuvre, side)).then_some(side));
         match done {
             [Some(_), Some(_)] => None,
             [None, None] => Some(format!("{name}: not tested")),

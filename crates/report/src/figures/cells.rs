@@ -132,7 +132,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
         (Outline::Alias, DOTTED, "mostly indistinguishable from it"),
         (Outline::Finding, SOLID, "in the title"),
     ];
-    let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
+    let shown = outlines.iter().filter(|(outline, ..)| data.all().any(|cell| cell.outline == Some(*outline)));
     sheet.legend(
         &shown.map(|(_, dash, name)| LegendEntry::new(LegendSymbol::Outline(dash), *name)).collect::<Vec<_>>(),
     )?;

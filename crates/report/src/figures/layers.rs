@@ -6,7 +6,9 @@ use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
-use super::shared::{ACROSS_PAD_SHARE, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
+use super::shared::{
+    ACROSS_PAD_SHARE, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke,
+};
 use super::side_labels;
 use crate::axis::{Axis, TickRule};
 use crate::backend::{PlotResult, SvgGroup, UNITS_PER_POINT, units};
@@ -176,7 +178,7 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
     stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
-/// Extents of some layers along one axis; if the axis is cut for wild data, every value is a separate extent.
+/// Extents of layers along one axis; if the axis is cut for wild data, every value is a separate extent.
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
@@ -284,12 +286,12 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
         background(chart, theme, stack, &stack.rows[if stack.columns.is_some() { 0 } else { index / count }])?;
         // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
-        let (bands, others): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
-        for layer in bands.into_iter().chain(others) {
+        let (bands, layers): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
+        for layer in bands.into_iter().chain(layers) {
             dots += draw_layer(chart, layer, theme, outside)?;
         }
         chart.frame(theme)?;
-        panel.layers.iter().try_for_each(|layer| draw_words(chart, layer, theme))?;
+        panel.layers.iter().try_for_each(|layer| draw_labels(chart, layer, theme))?;
         if stack.columns.is_some() {
             corner(chart, theme, panel)?;
         }
@@ -354,14 +356,14 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
     Ok(0)
 }
 
-/// Writes the words of a layer next to its points, on the other side if they would leave the panel.
-fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Labels(colour, corner, words) = &layer.kind else { return Ok(()) };
+/// Writes the labels of a layer next to its points, on the other side if they would leave the panel.
+fn draw_labels(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
+    let LayerKind::Labels(colour, corner, labels) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
-    for ((x, y), words) in layer.curve.pairs().zip(words) {
+    for ((x, y), label) in layer.curve.pairs().zip(labels) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, HPos::Left) };
+        let text = TextLine { colour: *colour, ..TextLine::new(label, theme.small_font, HPos::Left) };
         let left = x - right - text.width();
         let fits_right = x + right + text.width() < chart.rect.right();
         let is_right = left < chart.rect.x || corner.is_right && fits_right;

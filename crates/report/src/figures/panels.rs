@@ -134,7 +134,7 @@ pub struct Marks {
     pub side_by_side: bool,
 }
 
-/// Place of the words of a point.
+/// Corner of a point at which its label stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LabelPlacement {
     /// `true` above the point.
@@ -160,7 +160,7 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Words next to the points, all in one corner of their points.
+    /// Labels next to the points, all at the same corner.
     Labels(RGBColor, LabelPlacement, Vec<String>),
 }
 
@@ -363,7 +363,7 @@ pub struct Panels {
     pub note: Option<String>,
     /// Remark if a layer is cut.
     pub cut: Option<String>,
-    /// Meaning of marks beyond the axes; `None` if it needs no words.
+    /// Meaning of marks beyond the axes; `None` without a remark.
     pub overflow_note: Option<String>,
 }
 

@@ -24,7 +24,7 @@ const DENSE: usize = 400;
 /// Maximum number of dots of full size; more are smaller, so that they stay separate.
 const MANY: usize = 150;
 
-/// Remark on marks beyond an axis whose meaning needs no words.
+/// Default remark on marks beyond an axis.
 pub(super) const BEYOND_AXIS_REMARK: &str = "Arrows: beyond the axis.";
 
 /// Bars of the marks of a figure: always 95 % intervals.

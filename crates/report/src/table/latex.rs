@@ -4,7 +4,7 @@
 
 use super::content::Table;
 use super::head::TableColumn;
-use super::latex_text::{escape, script, heading_text};
+use super::latex_text::{escape, heading_text, script};
 use super::width::{Alignment, columns as characters};
 
 /// Maximum number of rows on one page; longer tables run over pages.
@@ -60,8 +60,8 @@ impl LatexColumn {
     fn new(table: &Table, place: usize, column: &TableColumn) -> Self {
         let cells: Vec<Option<&str>> = table.rows.iter().map(|row| row.get(place).and_then(Option::as_deref)).collect();
         let numbers: Vec<Option<LatexNumber>> = cells.iter().map(|cell| cell.and_then(LatexNumber::parse)).collect();
-        let (known, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
-        let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= known;
+        let (filled, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
+        let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= filled;
         let widest = cells.iter().flatten().map(|cell| characters(cell)).max().unwrap_or(0);
         let format = match (is_number, column.alignment) {
             (true, _) => format!("S[table-format={}]", table_format(numbers.iter().flatten())),
@@ -86,7 +86,7 @@ impl LatexColumn {
     }
 }
 
-/// Heading in lines no longer than the cells below, as far as its words allow.
+/// Heading in lines no longer than the cells below, broken at blanks only.
 fn wrapped(heading: &str, body: usize) -> Vec<String> {
     let longest = heading.split(' ').map(characters).max().unwrap_or(0).max(body);
     let mut lines: Vec<String> = Vec::new();

@@ -31,10 +31,10 @@ pub(super) fn escape(text: &str) -> String {
                 chars.next();
             }
             out.push_str(&format!("${kind}{{{run}}}$"));
-        } else if let Some(accent) = chars.peek().and_then(|next| found("accent", *next)) {
+        } else if let Some(accent) = chars.peek().and_then(|next| table_entry("accent", *next)) {
             chars.next();
             let letter = c.is_ascii_alphanumeric().then(|| c.to_string());
-            match letter.or_else(|| found("math", c).map(str::to_owned)) {
+            match letter.or_else(|| table_entry("math", c).map(str::to_owned)) {
                 Some(letter) => out.push_str(&format!("$\\{accent}{{{letter}}}$")),
                 // An accent on a character that is not a letter is written alone.
                 None => out.push_str(&alone(c)),
@@ -62,7 +62,7 @@ pub(super) fn script(c: char) -> Option<(char, char)> {
 }
 
 fn alone(c: char) -> String {
-    match (found("text", c), found("math", c)) {
+    match (found("text", c), table_entry("math", c)) {
         (Some(plain), _) => plain.to_owned(),
         (_, Some(sign)) => format!("${sign}$"),
         _ if c.is_ascii() || LETTERS.contains(c) => c.to_string(),
@@ -70,7 +70,7 @@ fn alone(c: char) -> String {
     }
 }
 
-fn found(kind: &str, c: char) -> Option<&'static str> {
+fn table_entry(kind: &str, c: char) -> Option<&'static str> {
     let code = format!("{kind}\tU+{:04X}\t", u32::from(c));
     SIGNS.lines().find_map(|line| line.strip_prefix(code.as_str()))
 }

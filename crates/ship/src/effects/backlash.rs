@@ -3,7 +3,8 @@
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
 use super::effect::{
-    Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
+    RecordScales,
 };
 use crate::angle::DEGREE;
 use estimation::number::Real;
@@ -47,7 +48,7 @@ impl Effect for Backlash {
     }
 }
 
-impl<R: Real> Action<R> for Backlash {
+impl<R: Real> EffectEquations<R> for Backlash {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }

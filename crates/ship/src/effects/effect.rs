@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use estimation::number::Real;
 
-use super::file_number::{ScenarioNumber, NumberConversion};
+use super::scenario_number::{NumberConversion, ScenarioNumber};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
@@ -129,7 +129,7 @@ pub struct SwayCoupling<R = f64> {
     pub rudder_time: R,
 }
 
-/// Quantities on which an effect acts in addition to its own states; other quantities are not evaluated.
+/// Targets of an effect in addition to its states; the equations of other targets are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EffectTargets {
     /// `true` if the effect transforms the acting rudder.
@@ -164,10 +164,10 @@ pub struct Description {
     pub parameters: &'static [Parameter],
 }
 
-/// Effect that a first-order response lacks. Its equations are in [`Action`].
+/// Effect that a first-order response lacks. Its equations are in [`EffectEquations`].
 ///
 /// `p` has the values of the parameters.
-pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
+pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
 
@@ -276,7 +276,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
 /// Equations of an effect, for every number type.
 ///
 /// `p` has the values of the parameters, `z` the states.
-pub trait Action<R: Real> {
+pub trait EffectEquations<R: Real> {
     /// States on a straight approach.
     fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(0.0));
@@ -317,19 +317,19 @@ pub trait Action<R: Real> {
 /// Number type in which the equations of effects can be evaluated.
 pub trait EffectReal: Real {
     /// Equations of an effect in this number type.
-    fn action(effect: &dyn Effect) -> &dyn Action<Self>;
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self>;
 }
 
 impl EffectReal for f64 {
     #[inline]
-    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self> {
         effect
     }
 }
 
 impl EffectReal for Tangent {
     #[inline]
-    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self> {
         effect
     }
 }
@@ -370,7 +370,7 @@ pub struct Prior {
     pub highest: f64,
     /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
-    /// Index of a reference parameter of the effect: value and prior are those of the difference from this parameter.
+    /// Index of a reference parameter of the effect: value and prior refer to the difference from it.
     pub reference: Option<usize>,
 }
 

@@ -4,10 +4,10 @@
 use std::sync::{Arc, LazyLock};
 
 use super::backlash::Backlash;
-use super::effect::{EffectTargets, Description, Effect, Parameter};
-use super::file_number::NumberConversion::{Direction, OverT};
-use super::file_number::{PER_DEGREE, PER_DEGREE_SQUARED};
+use super::effect::{Description, Effect, EffectTargets, Parameter};
 use super::formula::{Formula, ListedFormula, ListedPrior};
+use super::scenario_number::NumberConversion::{Direction, OverT};
+use super::scenario_number::{PER_DEGREE, PER_DEGREE_SQUARED};
 use super::second_order::SecondOrder;
 use super::speed_loss::SpeedLoss;
 use super::steering_lag::SteeringLag;
@@ -28,8 +28,8 @@ pub(super) enum ListedEffect {
 /// which the formula names them, with their keys in scenario files; prior (mean, standard deviation and maximum) in
 /// given records.
 ///
-/// With [`EffectTargets::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; with [`EffectTargets::MOMENT`] a yaw
-/// acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
+/// With [`EffectTargets::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; with
+/// [`EffectTargets::MOMENT`] a yaw acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
 const fn row(
     [id, form, equation]: [&'static str; 3],
     acts_on: EffectTargets,

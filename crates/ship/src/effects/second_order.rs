@@ -3,7 +3,7 @@
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{
-    Action, EffectTargets, CandidateEffect, Description, Effect, Parameter, Prior, RecordScales, SwayCoupling,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, Parameter, Prior, RecordScales, SwayCoupling,
 };
 use estimation::number::Real;
 
@@ -53,7 +53,7 @@ impl Effect for SecondOrder {
     }
 }
 
-impl<R: Real> Action<R> for SecondOrder {
+impl<R: Real> EffectEquations<R> for SecondOrder {
     fn sway_coupling(&self, p: &[R]) -> Option<SwayCoupling<R>> {
         Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
     }

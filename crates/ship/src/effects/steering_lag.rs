@@ -1,7 +1,8 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
+    RecordScales,
 };
 use estimation::number::Real;
 
@@ -75,7 +76,7 @@ impl Effect for SteeringLag {
     }
 }
 
-impl<R: Real> Action<R> for SteeringLag {
+impl<R: Real> EffectEquations<R> for SteeringLag {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
+    RecordScales,
 };
 use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
@@ -112,7 +113,7 @@ impl Effect for TransientDisturbance {
     }
 }
 
-impl<R: Real> Action<R> for TransientDisturbance {
+impl<R: Real> EffectEquations<R> for TransientDisturbance {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let since = R::from(now.t) - p[1];
         let shape = match self {

@@ -106,7 +106,7 @@ fn is_of_side(key: &str) -> bool {
     matches!(key, "b" | "delta_r")
 }
 
-/// `true` if a coefficient belongs to the trial and not to the ship, so that each trial has its own.
+/// `true` if a coefficient belongs to the trial and not to the ship, such as δ_r: every trial has a separate value.
 pub fn is_trial_specific(key: &str) -> bool {
     key == BIAS_TERM.key
 }
@@ -178,7 +178,10 @@ impl HullForm {
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
             is_valid.then(|| Self { equations, coefficients, covariance }.with_windage(prior))
         };
-        Some([form(FormEquations::Quadratic, &QUADRATIC_TERMS, quadratic)?, form(FormEquations::Cubic, &CUBIC_TERMS, cubic)?])
+        Some([
+            form(FormEquations::Quadratic, &QUADRATIC_TERMS, quadratic)?,
+            form(FormEquations::Cubic, &CUBIC_TERMS, cubic)?,
+        ])
     }
 
     /// MMG form with the priors of its coefficients.

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Number of coefficients.
+/// Number of coefficients of the planar equations.
 pub const COEFFICIENT_COUNT: usize = 8;
 
 /// Symbols of the coefficients, in the order of [`PlanarCoefficients::to_array`].

@@ -8,7 +8,7 @@ use super::{KEY, zig_zag};
 use crate::disturbance::GaussMarkov;
 use crate::limits::{MAX_EXECUTES, MAX_ROWS, MAX_TIME_S};
 use crate::sensor::Spikes;
-use crate::{Requirement, Manoeuvre, SimulateError, SimulatedShip, Simulation, Solver};
+use crate::{Manoeuvre, Requirement, SimulateError, SimulatedShip, Simulation, Solver};
 
 fn failure(simulation: &Simulation) -> SimulateError {
     simulation.run(&KEY).expect_err("this must fail")

@@ -1,6 +1,6 @@
 //! JSON document of a failure: the message and its parts, as `--format json` writes them to standard error.
 
-use campaign::failure::{FailureKind, Failure, FailureParts};
+use campaign::failure::{Failure, FailureKind, FailureParts};
 use serde::Serialize;
 
 use crate::screen;

@@ -123,7 +123,8 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
             "Score: rms heading error; for K and T the larger relative error. Left of the line a method is better than {}. Medians over \
-             the cases; hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; bars: 95 %, for six independent records or more.",
+             the cases; hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; bars: 95 %, for six independent \
+             records or more.",
             results.reference
         )),
         ..NamedRows::default()

@@ -230,7 +230,7 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
 #[template(path = "records.md", escape = "none")]
 struct RecordsPage<'a> {
     manifest: &'a Manifest,
-    words: &'a Prose,
+    prose: &'a Prose,
     brief: Table,
     coverage: Option<Table>,
     figures: PlacedFigures<FigurePlace>,
@@ -241,7 +241,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     let predictions = &summary.predictions;
     let page = RecordsPage {
         manifest,
-        words: &design.prose,
+        prose: &design.prose,
         brief: brief(&summary.records, design),
         coverage: (!predictions.is_empty()).then(|| coverage_table::pooled(predictions, design)),
         figures: PlacedFigures(figures),

@@ -6,8 +6,8 @@ use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
 use document::{ErrorCode, ImoFormEntry, Warning, WarningCode, WarningSource, Warnings};
-use identify::answer::entry;
 use identify::estimate::Uncertainty;
+use identify::method_entry::method_entry;
 use identify::plausibility::unusual_ship;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry, verdict};
@@ -124,7 +124,7 @@ pub fn fit(
         .par_iter()
         .progress_with(progress::bar("methods", methods.len() as u64, quiet))
         .map(|(label, method)| {
-            let (mut entry, estimate) = entry(label, method.identify(trials), trials);
+            let (mut entry, estimate) = method_entry(label, method.identify(trials), trials);
             entry.id = (method.id() != label).then(|| method.id().to_owned());
             entry.prime = entry.parameters.zip(ship).map(|(fit, ship)| PrimeIndices::new([fit.k_per_s, fit.t_s], ship));
             entry.validation = held_out.iter().map(|other| validate(other, estimate.as_ref())).collect();
@@ -142,7 +142,7 @@ pub fn fit(
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
-    warnings.extend(answers.iter().flat_map(verdict_warnings));
+    warnings.extend(answers.iter().flat_map(method_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };
@@ -228,7 +228,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
 }
 
 /// Warnings of a method.
-fn verdict_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+fn method_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
     let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
     WarningSource::Method(entry.method.clone()).attach_to(warnings).collect()
 }

@@ -20,7 +20,7 @@ use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
-use crate::records::{file_and_hash, missing_track_warning, particulars, late_rudder_message, unique_names};
+use crate::records::{file_and_hash, late_rudder_message, missing_track_warning, particulars, unique_names};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use ship::effects::{Effect, SecondOrder, listed_effect};
-use ship::ships::Model;
+use ship::ships::ShipModel;
 use ship::{ResponseModel, Ship, ships};
 
 use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
@@ -16,10 +16,10 @@ pub fn second_order() -> Ship {
 
 fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     let mut ship = ships::find("yukun").expect("it is in the registry");
-    let Model::Response(response) = &ship.model else { panic!("a response ship") };
+    let ShipModel::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
     parameters.extend(values);
-    ship.model = Model::Response(ResponseModel::new(vec![effect]).with_parameters(parameters));
+    ship.model = ShipModel::Response(ResponseModel::new(vec![effect]).with_parameters(parameters));
     ship
 }
 

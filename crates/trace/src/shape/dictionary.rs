@@ -12,7 +12,7 @@ use super::motion::PredictedMotion;
 pub enum ShipSignal {
     /// Heading ψ.
     Heading,
-    /// Way y.
+    /// Lateral way y to starboard of the initial course.
     Way,
     /// Yaw rate r.
     YawRate,
@@ -178,7 +178,7 @@ impl Shape {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
 
-    /// Index of the class of similar shapes.
+    /// Class of similar shapes, as an index.
     pub fn class(&self) -> usize {
         match self {
             Self::HeadingTrend => 6,

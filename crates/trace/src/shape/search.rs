@@ -34,8 +34,8 @@ const CHUNK: usize = 8;
 pub struct Candidate {
     /// Shape.
     pub shape: Shape,
-    /// Index of the one record in which it acts; `None` for all.
-    pub only: Option<usize>,
+    /// Index of the record in which the shape acts; `None` for all records.
+    pub record: Option<usize>,
     /// Penalty of the choice among places, forms and classes.
     pub penalty: f64,
     columns: Vec<HeadingColumn>,
@@ -71,8 +71,8 @@ const MIN_RMS: f64 = 1e-12;
 
 impl ShapeSearch<'_> {
     /// Candidate in all records, or in one; `None` if its moment is zero there.
-    fn candidate(&self, shape: Shape, only: Option<usize>, penalty: f64) -> Option<Candidate> {
-        let acting = || self.motions.iter().filter(|motion| only.is_none_or(|only| only == motion.number));
+    fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<Candidate> {
+        let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.number));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
             acting().map(|motion| (motion, shape.moments(motion))).collect();
         let column = |k: usize| -> Option<HeadingColumn> {
@@ -86,7 +86,7 @@ impl ShapeSearch<'_> {
             (size.is_finite() && size > MIN_RMS).then(|| moments.iter().map(response).collect())
         };
         let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<HeadingColumn>>>()?;
-        Some(Candidate { shape, only, penalty, columns })
+        Some(Candidate { shape, record, penalty, columns })
     }
 
     /// Candidates of all shapes; `unit` (s) is the time unit of the lags.
@@ -114,7 +114,7 @@ impl ShapeSearch<'_> {
                 requested.push((*shape, Some(motion.number), penalty(shape, *places, &of_record)));
             }
         }
-        let candidate = |(shape, only, penalty)| self.candidate(shape, only, penalty).map(Arc::new);
+        let candidate = |(shape, record, penalty)| self.candidate(shape, record, penalty).map(Arc::new);
         requested.into_par_iter().filter_map(candidate).collect()
     }
 
@@ -203,7 +203,7 @@ impl ShapeSearch<'_> {
         columns
     }
 
-    /// Finalists of a scan: the best candidates, and the best of some classes.
+    /// Finalists of a scan: the best candidates, and the best candidate of several classes.
     fn finalists(&self, criteria: &[f64], library: &[Arc<Candidate>]) -> Vec<Arc<Candidate>> {
         let mut order: Vec<usize> = (0..library.len()).filter(|&place| criteria[place].is_finite()).collect();
         order.sort_by(|&a, &b| criteria[a].total_cmp(&criteria[b]));
@@ -274,11 +274,8 @@ impl ShapeSearch<'_> {
     /// Explanation by some shapes under their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (criterion, law) = if all.is_empty() {
-            best_law(self.structure).unwrap_or(NONE)
-        } else {
-            self.best_law(self.structure, &all)
-        };
+        let (criterion, law) =
+            if all.is_empty() { best_law(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
         Explanation { shapes, criterion, law }
     }
 
@@ -293,13 +290,15 @@ impl ShapeSearch<'_> {
         let mut has_moved = false;
         for scale in [1.0, 0.5, 0.25] {
             for number in 0..shapes.len() {
-                for (place, sign) in (0..shapes[number].shape.continuous_parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+                for (place, sign) in
+                    (0..shapes[number].shape.continuous_parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)])
+                {
                     for _ in 0..3 {
-                        let Candidate { shape, only, penalty, .. } = *shapes[number];
-                        let motion = &self.motions[only.unwrap_or(0)];
+                        let Candidate { shape, record, penalty, .. } = *shapes[number];
+                        let motion = &self.motions[record.unwrap_or(0)];
                         let extent = [motion.span()[1], motion.record.spacing];
                         let moved = shape.moved(place, sign * scale, extent);
-                        let Some(next) = moved.and_then(|shape| self.candidate(shape, only, penalty)) else { break };
+                        let Some(next) = moved.and_then(|shape| self.candidate(shape, record, penalty)) else { break };
                         let before = std::mem::replace(&mut columns[number], white(&next));
                         let criterion = structure.criterion_with(&columns.concat());
                         if criterion >= lowest - 1e-6 {
@@ -315,8 +314,8 @@ impl ShapeSearch<'_> {
         has_moved.then(|| self.explained(shapes))
     }
 
-    /// Structure with the shapes of an explanation appended, under its law.
-    pub fn whole(&self, all: &Explanation) -> Option<WhitenedStructure> {
+    /// Whitened structure with the shapes of an explanation appended, under its law.
+    pub fn with_shapes(&self, all: &Explanation) -> Option<WhitenedStructure> {
         let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
         self.structure[all.law].as_ref()?.extended(&self.white(all.law, &shapes).concat())
     }

@@ -59,7 +59,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
 /// Clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
     let named = analysis.named_shapes(|_| 300.0);
-    named.first().map(|named| (named.candidate.shape, named.candidate.only)).expect("a shape")
+    named.first().map(|named| (named.candidate.shape, named.candidate.record)).expect("a shape")
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn criteria_are_those_of_dense_matrices() {
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
-    let noise = RecordNoise::new(&PreparedRecord::whole(&made), 0.1, 40.0, 1);
+    let noise = RecordNoise::new(&PreparedRecord::with_all_rows(&made), 0.1, 40.0, 1);
     let weights = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
     let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
     let dense = |count: usize| {

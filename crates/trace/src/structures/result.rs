@@ -31,7 +31,7 @@ pub struct Structures {
     /// Visibility of every candidate: expected squared coefficient over its variance with all other candidates present;
     /// a candidate of small visibility is unobservable.
     pub visibility: BTreeMap<TermName, f64>,
-    /// Evidence for every candidate.
+    /// Evidence for every candidate term.
     pub support: BTreeMap<TermName, TermEvidence>,
     /// Structures under other noise laws: weight, names of the terms.
     pub(super) rivals: Vec<(f64, Vec<TermName>)>,
@@ -76,8 +76,8 @@ impl Structures {
     }
 
     /// Probability of an effect in any form, in all records or in one.
-    pub fn effect_probability(&self, id: &str, only: Option<usize>) -> f64 {
-        self.inclusion_probability(|name| name.0 == id && name.2 == only)
+    pub fn effect_probability(&self, id: &str, record: Option<usize>) -> f64 {
+        self.inclusion_probability(|name| name.0 == id && name.2 == record)
     }
 
     /// Mean square residual of the most probable structure without moments of time, rad²; infinite if there is none.
@@ -89,13 +89,13 @@ impl Structures {
         if rows > 0.0 { sum / rows } else { f64::INFINITY }
     }
 
-    /// Support of the best form of an effect.
-    pub fn effect_evidence(&self, id: &str, only: Option<usize>) -> TermEvidence {
-        let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == only).map(|(_, form)| *form);
+    /// Evidence for the best form of an effect.
+    pub fn effect_evidence(&self, id: &str, record: Option<usize>) -> TermEvidence {
+        let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == record).map(|(_, form)| *form);
         let none = TermEvidence { gain: 0.0, p_value: 1.0 };
         let mut best = forms.max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap_or(none);
         // The refitted structures are more accurate than the quadratic approximation.
-        let probability = self.effect_probability(id, only).clamp(1e-12, 1.0 - 1e-12);
+        let probability = self.effect_probability(id, record).clamp(1e-12, 1.0 - 1e-12);
         if probability > 0.5 {
             best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PRIOR_PROBABILITY.ln());
         }
@@ -109,8 +109,8 @@ impl Structures {
         present.map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
 
-    /// [`inclusion_probability`](Self::inclusion_probability) with the prior odds of every term that `is_weighed` multiplied
-    /// by a factor: the weight of a structure changes by the factor for each such term. Only fitted structures count.
+    /// [`inclusion_probability`](Self::inclusion_probability) with the prior odds of `is_weighed` terms multiplied by
+    /// a factor: the weight of a structure changes by the factor for each such term. Only fitted structures count.
     pub fn probability_with_odds(
         &self,
         factor: f64,

@@ -122,7 +122,7 @@ impl DetectedManoeuvre {
         }
     }
 
-    /// Nominal rudder and change of heading, rad, positive to starboard; those of a zig-zag have no sign.
+    /// Nominal rudder and change of heading, rad, positive to starboard; without a sign for a zig-zag.
     pub fn angles(&self) -> [Option<f64>; 2] {
         let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
         let (rudder, sign) = (manoeuvre.max_rudder(), manoeuvre.first_side().sign());

@@ -9,7 +9,7 @@
 //! holds of each manoeuvre. Positive rudder turns the ship to starboard; in a log with the opposite sign only straight
 //! pieces are detected.
 //!
-//! The manoeuvres are those of ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
+//! Source of the manoeuvres: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 mod bounds;
 mod course;

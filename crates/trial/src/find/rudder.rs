@@ -60,7 +60,7 @@ impl Hold {
         self.until - self.from
     }
 
-    /// Union of two holds with the rows between them; the level is that of the longer hold.
+    /// Union of two holds with the rows between them; with the level of the longer hold.
     pub fn joined(self, later: Self) -> Self {
         let level = if later.duration() > self.duration() { later.level } else { self.level };
         Self { last: later.last, until: later.until, level, ..self }

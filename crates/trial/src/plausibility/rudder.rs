@@ -15,7 +15,7 @@ const MAX_RUDDER_RATE_DEG_S: f64 = 10.0;
 /// Minimum length of a stroke of the steering gear, deg; shorter movements are corrections.
 const MIN_STROKE_DEG: f64 = 8.0;
 
-/// Rates of steering gears, from a slow gear to that of a small model, deg/s; other rates are a fault of the clock.
+/// Rates of steering gears, from a slow gear to a small model, deg/s; other rates are a fault of the clock.
 const RUDDER_RATES_DEG_S: std::ops::RangeInclusive<f64> = 0.3..=100.0;
 
 /// Minimum share of steps among the strokes of an order.

@@ -8,7 +8,7 @@ use super::error::Problem;
 use super::layout::{Content, RawColumn};
 use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
-use crate::cleaning::{MIN_IMPOSSIBLE_RUDDER_RAD, MAX_IMPOSSIBLE_SHARE};
+use crate::cleaning::{MAX_IMPOSSIBLE_SHARE, MIN_IMPOSSIBLE_RUDDER_RAD};
 use crate::plausibility::{extremes, range, reversals};
 use crate::wording::shortened;
 

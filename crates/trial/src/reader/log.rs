@@ -27,7 +27,7 @@ use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
 
-/// Record with the warnings of the reader.
+/// Record read from a file, with the warnings of the reader.
 #[derive(Debug, Clone)]
 pub struct ReadRecord {
     /// Record.
@@ -286,7 +286,7 @@ impl Log {
     }
 }
 
-/// Seconds from the times of the second clock to those of the first.
+/// Offset of the second clock from the first, s.
 fn offset(first: &Clock, second: &Clock) -> f64 {
     let zone = first.zone.zip(second.zone).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
     let seconds = second.second - first.second + zone;
@@ -314,7 +314,7 @@ fn of_series(
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
-/// Log of channels with their own instants, each cleaned separately, in the part declared by the sidecar.
+/// Log of channels at separate instants, each cleaned separately, in the part declared by the sidecar.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
@@ -344,8 +344,8 @@ pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
 
 /// Reads the trial at `path` with the sidecar at `sidecar`; `None` uses the header only.
 ///
-/// Fails with [`ReadError`] if the file is absent, larger than [`RECORD_FILE`](super::RECORD_FILE) or of an unknown format,
-/// if a required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
+/// Fails with [`ReadError`] if the file is absent, larger than [`super::RECORD_FILE`] or of an unknown format, if a
+/// required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
 /// or more than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible
 /// ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {

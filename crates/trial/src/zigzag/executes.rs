@@ -49,7 +49,7 @@ pub struct RudderMovements<'a> {
     time: &'a [f64],
     angle: &'a [f64],
     holds: &'a [Hold],
-    /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
+    /// Standard deviation of the rudder noise, rad; at least the rounding error of the channel.
     noise: f64,
     /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound if a ramp is
     /// about as long as a sampling interval, `None` if it is shorter.

@@ -1,7 +1,7 @@
 //! Effect written as a line of text: a formula over the signals of a trial, with constants that are fitted.
 //!
 //! The formula of a user is a yaw moment as equivalent rudder angle, rad: T r' + r = K (δ + δ_r + formula). The
-//! properties of its constants are found by evaluation. A formula of the list has a description, and is a yaw
+//! properties of its constants follow from evaluation. A formula of the list has a description, and is a yaw
 //! acceleration or the acting rudder.
 
 mod columns;
@@ -16,7 +16,9 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Action, EffectTargets, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales};
+use super::effect::{
+    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Prior, RecordScales,
+};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
@@ -59,8 +61,8 @@ impl MirrorSymmetry {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`EffectTargets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTargets::MOMENT`] for a yaw acceleration,
-    /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
+    /// [`EffectTargets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTargets::MOMENT`] for a yaw
+    /// acceleration, rad/s²: `K_over_T` times the moment as equivalent rudder angle.
     pub(super) acts_on: EffectTargets,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
@@ -294,7 +296,7 @@ impl Effect for Formula {
     }
 }
 
-impl<R: Real> Action<R> for Formula {
+impl<R: Real> EffectEquations<R> for Formula {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         if let [way, course] = z {
             (*way, *course) = (R::from(0.0), now.heading);

@@ -2,7 +2,9 @@
 //!
 //! Source: Aho, Lam, Sethi and Ullman (2006), Compilers, second edition, section 4.4.
 
-use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK_VALUES};
+use super::program::{
+    FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK_VALUES,
+};
 
 /// Maximum number of characters in a formula.
 pub(super) const MAX_FORMULA_CHARS: usize = 400;
@@ -19,7 +21,7 @@ pub struct FormulaError {
     pub text: String,
     /// Position: number of characters before it.
     pub position: usize,
-    /// Problem at the position: symbol found and symbols expected.
+    /// Problem at the position: given symbol and expected symbols.
     pub problem: String,
 }
 

@@ -1,4 +1,4 @@
-//! Properties of a formula, found by evaluation at sample points: amplitudes (sizes) and shape constants, their
+//! Properties of a formula from its values at sample points: amplitudes (sizes) and shape constants, their
 //! symmetry and units, and their priors.
 
 use super::points::{SignalPoint, SignalScales};

@@ -111,14 +111,14 @@ fn law<const N: usize>(
 mod tests {
     use super::*;
     use crate::dynamics::Input;
-    use crate::ships::{self, Model};
+    use crate::ships::{self, ShipModel};
     use crate::vessel::prime::HullForm;
     use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
     use estimation::statistics::median;
 
     /// u', v' and r' of a hull in every state; `None` for a ship that is a response model.
     fn published(ship: &ships::Ship) -> Option<DVector<f64>> {
-        let (Model::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
+        let (ShipModel::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
         let second = scale.length / scale.speed;
         let mut state = vec![0.0; hull.dimension()];
         hull.approach(0.0, 0.0, &mut state);

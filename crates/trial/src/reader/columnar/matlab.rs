@@ -17,7 +17,8 @@ use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD_FILE};
 use variable::{
-    ByteCursor, CELL_ARRAY, COMPRESSED_ELEMENT, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
+    ByteCursor, CELL_ARRAY, COMPRESSED_ELEMENT, OtherVariable, Variable, Variables, class_name, contradiction, damaged,
+    size,
 };
 
 pub use level4::is_level4;
@@ -116,7 +117,9 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
         };
         let mut inner = ByteCursor { tail: &unpacked, big_endian };
         let content = match kind {
-            COMPRESSED_ELEMENT => inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail),
+            COMPRESSED_ELEMENT => {
+                inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail)
+            }
             _ => Some(data),
         };
         match content.and_then(|content| variable(content, big_endian)).ok_or_else(contradiction)? {
@@ -127,7 +130,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     Ok((numeric, left_out))
 }
 
-/// Table of a file as text: the variables of equal length with the most known names, or else the most numbers.
+/// Reader of a MATLAB file as tab-separated text: variables of the length with most known names, else most numbers.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::column_meaning(name)? {

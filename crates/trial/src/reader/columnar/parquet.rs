@@ -141,7 +141,7 @@ fn failed(error: ParquetError) -> Problem {
     damaged(error.to_string())
 }
 
-/// Table of a file as text.
+/// Reader of a Parquet file as tab-separated text, decoded chunk by chunk; names first, then rows.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let mut rows = checked(|| Rows::open(bytes))?;
     Ok(Box::new(ChunkReader::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))

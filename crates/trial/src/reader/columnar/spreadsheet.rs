@@ -1,7 +1,7 @@
 //! Excel spreadsheets (.xlsx) as text: a single sheet, with its rows on the line numbers of Excel. Formulas have the
 //! values stored with them. Other kinds of spreadsheets are not read.
 //!
-//! The decoder borrows the file while it reads a sheet; it therefore runs in its own thread, which waits until
+//! The decoder borrows the file while it reads a sheet; it therefore runs in a separate thread, which waits until
 //! its lines are read.
 //!
 //! Source of the layout: ECMA-376, Office Open XML File Formats, part 1.
@@ -36,7 +36,7 @@ fn damaged(damage: impl ToString) -> Problem {
     Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", damage: damage.to_string() }
 }
 
-/// Table of a file as text.
+/// Reader of the sheet with the table as tab-separated text; a thread decodes the rows.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {

@@ -1,4 +1,4 @@
-//! ChosenInstruments of an instrument for every channel. A channel never mixes instruments: the better kind is preferred (true
+//! Choice of an instrument for every channel. A channel never mixes instruments: the better kind is preferred (true
 //! heading before magnetic, speed through the water before speed over ground), then the instrument with the most
 //! readings, then the first in the log. A choice among several is a warning.
 

@@ -8,7 +8,7 @@ pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
 /// Inverse of a square degree, 1/rad².
 pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 
-/// Entry of a scenario file that sets a parameter.
+/// Number of a scenario file that sets a parameter of an effect: key, unit, conversion and default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScenarioNumber {
     /// Key below the effect; it ends in the unit.
