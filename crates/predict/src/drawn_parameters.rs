@@ -6,7 +6,7 @@ use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
 use crate::mixture::{
-    DrawnShip, GOLDEN_RATIO_MINUS_ONE, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability,
+    DrawnShip, GOLDEN_STEP, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability,
 };
 
 /// Structure and parameters of a drawn ship; SI units and radians.
@@ -88,7 +88,7 @@ impl EstimateSampler {
 
     /// Draw number `number`, which depends on the seed and the number alone.
     pub fn sample(&self, number: u64) -> DrawnEstimate {
-        let share = (0.5 + number as f64 * GOLDEN_RATIO_MINUS_ONE).fract();
+        let share = (0.5 + number as f64 * GOLDEN_STEP).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));

@@ -241,17 +241,14 @@ impl ShipMixture {
     /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
     /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
     pub(crate) fn drawn_structure(&self, number: u64) -> &StructureSampler {
-        let step = if self.is_independent && !self.shares_trial_errors {
-            std::f64::consts::SQRT_2 - 1.0
-        } else {
-            GOLDEN_RATIO_MINUS_ONE
-        };
+        let step =
+            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN_STEP };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }
 
 /// Golden ratio minus one, the step of a low-discrepancy sequence.
-pub(crate) const GOLDEN_RATIO_MINUS_ONE: f64 = 0.618_033_988_749_894_9;
+pub(crate) const GOLDEN_STEP: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
 pub(crate) fn structure_at_probability(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {

@@ -58,7 +58,7 @@ impl fmt::Display for Requirement {
                 write!(f, "a run of at most {most:.0e} steps, but this one can take {estimate:.1e}")
             }
             Self::Execute(last) => write!(f, "at most {last}"),
-            Self::Other([_, expected, _]) | Self::Value([_, expected, _]) => f.write_str(expected),
+            Self::OtherKey([_, expected, _]) | Self::OtherValue([_, expected, _]) => f.write_str(expected),
         }
     }
 }

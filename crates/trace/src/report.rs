@@ -206,19 +206,13 @@ impl TraceParts<'_> {
         self.number(entry.parameter, quantity, entry.record, entry.is_at_bound(fitted))
     }
 
-    fn number(
-        &self,
-        parameter: &Parameter,
-        quantity: Quantity,
-        record: Option<usize>,
-        at_bound: bool,
-    ) -> ParameterEntry {
+    fn number(&self, parameter: &Parameter, value: Quantity, record: Option<usize>, at_bound: bool) -> ParameterEntry {
         let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
-            quantity: quantity.scaled(ship.prime_factor(parameter.dimension())),
+            quantity: value.scaled(ship.prime_factor(parameter.dimension())),
             unit: prime_unit(parameter.unit),
         });
         let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
-        ParameterEntry { key, symbol, quantity, unit, prime, only: self.record_name(record), at_bound }
+        ParameterEntry { key, symbol, quantity: value, unit, prime, only: self.record_name(record), at_bound }
     }
 
     /// Parameters of a term, averaged over the structures that have it.
@@ -387,7 +381,7 @@ impl TraceParts<'_> {
             horizons: Vec::new(),
         };
         let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
-        let leave_one_out =
+        let folds =
             self.trials.iter().zip(self.leave_one_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
         ErrorEntry {
             kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
@@ -396,7 +390,7 @@ impl TraceParts<'_> {
             },
             identification: self.trials.iter().zip(self.identification).map(entry).collect(),
             validation: self.validation.0.iter().zip(self.validation.1).map(unfitted).collect(),
-            leave_one_out: leave_one_out.map(unfitted).collect(),
+            leave_one_out: folds.map(unfitted).collect(),
         }
     }
 

@@ -19,9 +19,11 @@ pub struct ResidualPeak {
     pub rms: f64,
 }
 
-/// Windows per record, and bands of headings.
-const PARTS: usize = 8;
-const BANDS: usize = 4;
+/// Number of windows per record.
+const WINDOWS_PER_RECORD: usize = 8;
+
+/// Number of bands of headings.
+const HEADING_BANDS: usize = 4;
 
 /// Peak of the residual (rad) of one record: time (s), residual, heading and rudder (rad) by row, `spacing` in s.
 pub fn residual_peak(
@@ -41,7 +43,7 @@ pub fn residual_peak(
     };
     let whole = rms(&rows);
     let total = whole * whole * rows.len() as f64;
-    let length = (rows.len() / PARTS).max(1);
+    let length = (rows.len() / WINDOWS_PER_RECORD).max(1);
     // Cumulative Σ e², so that a window is a difference of two sums.
     let mut sums = vec![0.0];
     sums.extend(rows.iter().scan(0.0, |sum, &row| {
@@ -62,7 +64,7 @@ pub fn residual_peak(
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&a, &b| heading[a].total_cmp(&heading[b]));
     let largest = by_heading
-        .chunks(rows.len().div_ceil(BANDS).max(1))
+        .chunks(rows.len().div_ceil(HEADING_BANDS).max(1))
         .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or(([0.0; 2], 0.0));

@@ -48,7 +48,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
-            Self::OutsideEstimates(_) => outside_estimates::ID,
+            Self::OutsideEstimates(_) => outside_estimates::METHOD_ID,
             Self::StraightOn => STRAIGHT_ON,
         }
     }

@@ -8,7 +8,7 @@ use identify::{Estimate, IdentifyError, OutsideFit};
 pub type TrialNumber = (u64, u64);
 
 /// Id of a method whose estimates are read from a table.
-pub const ID: &str = "external";
+pub const METHOD_ID: &str = "external";
 
 /// Outside estimates by trial. A trial without an estimate counts as failed.
 #[derive(Debug, Clone, PartialEq)]

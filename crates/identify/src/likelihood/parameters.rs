@@ -24,12 +24,16 @@ pub struct NoiseVector {
 
 /// Index of log(q/σ) in a noise vector.
 pub const LEVEL_INDEX: usize = 0;
+
 /// Index of log τ.
 pub const CORRELATION_INDEX: usize = 1;
+
 /// Index of the logarithm of the rudder error.
 pub const RUDDER_INDEX: usize = 2;
+
 /// Index of the log correlation time of the compass error.
 pub const COMPASS_INDEX: usize = 3;
+
 /// Index of log(σ_r/σ).
 pub const GYRO_INDEX: usize = 4;
 

@@ -6,9 +6,7 @@ use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
-use super::shared::{
-    ACROSS_PAD_SHARE, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke,
-};
+use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
 use super::side_labels;
 use crate::axis::{Axis, TickRule};
 use crate::backend::{PlotResult, SvgGroup, UNITS_PER_POINT, units};
@@ -216,7 +214,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
         data.fixed.extend(stack.marks.iter().map(|mark| mark.value));
-        let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD_SHARE });
+        let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD });
         is_cut |= cut;
         AxisSide::new(axis, ruler.title.as_str())
     };

@@ -16,7 +16,7 @@ use crate::theme::Theme;
 pub(super) const PAD_SHARE: f64 = 0.08;
 
 /// Free space left and right of lines.
-pub(super) const ACROSS_PAD_SHARE: f64 = 0.02;
+pub(super) const ACROSS_PAD: f64 = 0.02;
 
 /// Maximum number of points of a panel that are drawn as dots; more are drawn as a line.
 const DENSE: usize = 400;

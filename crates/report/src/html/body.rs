@@ -103,7 +103,7 @@ impl<'m> BodyReader<'_, 'm> {
                 continue;
             }
             match &events[place] {
-                Event::Start(Tag::Heading { level, .. }) => self.heading(*level, plain_text(events, place).0),
+                Event::Start(Tag::Heading { level, .. }) => self.heading(*level, plain_text(&events, place).0),
                 // Words over several rows are written once: no cell below them is a head.
                 Event::Start(Tag::TableCell) => {
                     self.begin_cell(matches!(events.get(place + 1), Some(Event::End(TagEnd::TableCell))));

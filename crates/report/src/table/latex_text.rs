@@ -62,7 +62,7 @@ pub(super) fn script(c: char) -> Option<(char, char)> {
 }
 
 fn alone(c: char) -> String {
-    match (found("text", c), table_entry("math", c)) {
+    match (table_entry("text", c), table_entry("math", c)) {
         (Some(plain), _) => plain.to_owned(),
         (_, Some(sign)) => format!("${sign}$"),
         _ if c.is_ascii() || LETTERS.contains(c) => c.to_string(),

@@ -36,7 +36,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
     let place = folder.path().display().to_string();
     let line = format!(
         "shard {shard} of {} is in {place}; copy all {} shards into one folder and run `study report` on it",
-        scenario.name, shard.of
+        scenario.name, shard.count
     );
     reply(common, &ShardAnswer { folder: place, manifest: &manifest }, &line)
 }

@@ -223,7 +223,7 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<PageFig
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
-    figures.extend(predictions(design, summary));
+    figures.extend(prediction_coverage(design, summary));
     figures.extend(pooled_charts::ratios_to_first_point(design, summary).map(|(data, method)| {
         let caption = format!(
             "Mean K and T of {method}, over those of the first row: where they change from row to row, K and T depend on the trial, \
