@@ -162,7 +162,7 @@ impl SharedTrials<'_> {
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| {
-                    of_base(judge, &PreparedRecord::with_all_rows(judge), &estimate.response, ReplayDepth::Windows).ok()
+                    of_base(judge, &PreparedRecord::unaveraged(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
                 (input.estimate_row(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }

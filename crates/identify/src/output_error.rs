@@ -309,9 +309,7 @@ impl RangeScan {
         let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        warnings.extend(
-            response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE_WARNING)),
-        );
+        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(UNSTABLE_WARNING)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             let text = format!("T = {time} s lies at or beyond the limit of the search, ±{end} s");
@@ -338,7 +336,7 @@ impl RangeScan {
 }
 
 /// Warning text for a negative 1/T.
-pub(crate) const COURSE_UNSTABLE_WARNING: &str = "course-unstable: 1/T is negative, K and T are negative";
+pub(crate) const UNSTABLE_WARNING: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from the covariance of (1/T, b, b δ_r).
 pub(crate) fn response_covariance(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {

@@ -70,8 +70,7 @@ pub enum StyleError {
     },
     /// Two colours for two keys that share one.
     #[error(
-        "[colours] {name} = \"{value}\": it shares its colour with {other}, which is set to another one; set one of \
-         them"
+        "[colours] {name} = \"{value}\": it shares its colour with {other}, which is set to another one; set one of them"
     )]
     Shared {
         /// Key of the colour.
@@ -203,20 +202,19 @@ mod tests {
     fn what_is_wrong_is_named() {
         let of =
             |name: &str, colour: &str| Style { colours: [(name.into(), colour.into())].into(), ..Style::default() };
-        let message = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
+        let text = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
         assert!(
-            message(of("output-eror", "#000000"))
-                .contains("[colours] output-eror: nothing has this name; expected one")
+            text(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
         );
         for wrong in ["#00", "red", "#00000g", "#ééé"] {
-            assert!(message(of("ink", wrong)).contains(wrong), "{wrong}");
+            assert!(text(of("ink", wrong)).contains(wrong), "{wrong}");
         }
         let mut two = of("heading", "#000000");
         two.colours.insert("integral-least-squares".into(), "#FFFFFF".into());
-        assert!(message(two).contains("shares its colour with heading"));
+        assert!(text(two).contains("shares its colour with heading"));
         let size = Style { font_size_pt: Some(100.0), ..Style::default() };
-        assert_eq!(message(size), "font-size-pt = 100: expected a number from 4 to 30");
+        assert_eq!(text(size), "font-size-pt = 100: expected a number from 4 to 30");
         let limits = Style { limits: [("x".into(), [2.0, 1.0])].into(), ..Style::default() };
-        assert_eq!(message(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
+        assert_eq!(text(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
     }
 }

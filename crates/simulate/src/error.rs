@@ -50,9 +50,9 @@ impl fmt::Display for Requirement {
             Self::NotNegative => write!(f, "a finite number, 0 or above"),
             Self::PositiveOrInfinite => write!(f, "a number above 0 (infinite is allowed)"),
             Self::Between(low, high) => {
-                write!(f, "a number from {} to {}", scenario_number(*low), scenario_number(*high))
+                write!(f, "a number from {} to {}", numeral(*low), numeral(*high))
             }
-            Self::AtMost(limit) => write!(f, "at most {}", scenario_number(*limit)),
+            Self::AtMost(limit) => write!(f, "at most {}", numeral(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
             Self::Steps { estimate, most } => {
                 write!(f, "a run of at most {most:.0e} steps, but this one can take {estimate:.1e}")
@@ -65,7 +65,7 @@ impl fmt::Display for Requirement {
 
 /// Error of an invalid value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{key} is {}, expected {expected}", scenario_number(*.value))]
+#[error("{key} is {}, expected {expected}", numeral(*.value))]
 pub struct SpecificationError {
     /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name if no scenario sets it.
     pub key: &'static str,
@@ -94,12 +94,12 @@ impl SpecificationError {
             Requirement::OtherKey(message) | Requirement::OtherValue(message) => return message.map(str::to_owned),
             Requirement::Duration => format!("`{key}` is missing"),
             Requirement::Execute(last) => {
-                format!("`{key}` is {}, but the manoeuvre ends after execute {last}", scenario_number(value))
+                format!("`{key}` is {}, but the manoeuvre ends after execute {last}", numeral(value))
             }
             _ if key == "vessel.dead_time" => {
                 format!("the dead times of all effects add up to {} s", ShortNumber(value))
             }
-            _ => format!("`{key}` is {}", scenario_number(value)),
+            _ => format!("`{key}` is {}", numeral(value)),
         };
         let requirement = match expected {
             Requirement::Finite => "expected a finite number".to_owned(),
@@ -124,7 +124,7 @@ impl SpecificationError {
             (_, Requirement::AtMost(limit)) if limit == MAX_TIME_S => "give a time in seconds",
             (key, Requirement::AtMost(limit)) if key.ends_with("duration-s") => {
                 let periods = (MAX_ROWS - 1) as f64;
-                let sampling_s = scenario_number(limit / periods);
+                let sampling_s = numeral(limit / periods);
                 return format!(
                     "record less, or more rarely: with `sampling-s` = {sampling_s} that limit is {periods} rows"
                 );
@@ -206,7 +206,7 @@ pub enum SimulateError {
 pub(crate) type Check = Result<(), SpecificationError>;
 
 /// Number as written in the scenario, without the rounding errors of the conversion to radians and back.
-pub(crate) fn scenario_number(value: f64) -> ShortNumber {
+pub(crate) fn numeral(value: f64) -> ShortNumber {
     ShortNumber::rounded(value, 14)
 }
 

@@ -163,11 +163,10 @@ fn analyse(
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = Base::fit(&trials)?;
-    let response = base.estimate.response;
-    let time = candidates::ship_time(&trials, response.K_over_T);
+    let time = candidates::ship_time(&trials, base.estimate.response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
-    let problem = FittedRecords::new(records, response.inverse_T, time);
+    let problem = FittedRecords::new(records, base.estimate.response.inverse_T, time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_noises);
     let members = structures.members();
     let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
@@ -178,7 +177,7 @@ fn analyse(
     let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
-    let held_out = averaged.compare_all(&validation, &response, settings.thorough)?;
+    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let leave_one_out = if is_folded { folds() } else { Vec::new() };
@@ -267,7 +266,7 @@ fn compare_fitted(
     let response = &base.estimate.response;
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
-        let record = PreparedRecord::with_all_rows(trial);
+        let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
@@ -364,6 +363,6 @@ impl Analysis {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
-        averaged.replay_on(trial, &PreparedRecord::with_all_rows(trial), &[start], ReplayDepth::Windows).ok()
+        averaged.replay_on(trial, &PreparedRecord::unaveraged(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

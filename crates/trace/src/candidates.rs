@@ -56,19 +56,14 @@ pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, re
 
 /// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
 /// declares a calm, or all records if it would act in all of them.
-pub fn is_excluded_by_calm(
-    effect: &dyn Effect,
-    record: Option<usize>,
-    trials: &[Trial],
-    selection: &Selection,
-) -> bool {
+pub fn is_barred_by_calm(effect: &dyn Effect, record: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || record.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_environmental() && !selection.requires(effect.id()) && is_calm()
 }
 
 /// `true` if waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
-    selection.allows(WaveHeading.id()) && !is_excluded_by_calm(&WaveHeading, None, trials, selection)
+    selection.allows(WaveHeading.id()) && !is_barred_by_calm(&WaveHeading, None, trials, selection)
 }
 
 /// Candidate terms of the selected effects for these records. Waves are a noise law and no candidate. A moment that
@@ -80,9 +75,8 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],
         };
-        for record in
-            places.into_iter().filter(|record| !is_excluded_by_calm(effect.as_ref(), *record, trials, selection))
-        {
+        let is_open = |record: &Option<usize>| !is_barred_by_calm(effect.as_ref(), *record, trials, selection);
+        for record in places.into_iter().filter(is_open) {
             let about = record_scales(records, trials, time, &records[record.unwrap_or(0)]);
             let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
             candidates.push(Term { effect, record, priors, log_odds: 0.0 });
@@ -105,7 +99,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
 
 /// `true` for a form that replaces another form of its effect and is not in the full model: a short
 /// first-order lag and a short dead time are nearly collinear.
-pub fn is_alternative_form(effect: &dyn Effect) -> bool {
+pub fn is_alternative(effect: &dyn Effect) -> bool {
     (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
 }
 
@@ -149,7 +143,7 @@ mod tests {
 
     /// Effects of the weather among the candidates, with the record in which they act.
     fn weather(trials: &[Trial], selection: &Selection) -> Vec<(&'static str, Option<usize>)> {
-        let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::with_all_rows).collect();
+        let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::unaveraged).collect();
         let all = all(&records, trials, 13.0, selection);
         assert!(all.iter().any(|term| term.effect.id() == "nonlinear_damping"));
         let mut named: Vec<_> =

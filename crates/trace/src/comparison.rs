@@ -164,7 +164,7 @@ impl AveragedModel<'_> {
     /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
     /// Fails if no replay is finite.
     pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
-        let record = PreparedRecord::with_all_rows(trial);
+        let record = PreparedRecord::unaveraged(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
         let mut before = replay_base(trial, &record, base, depth)?;
         let mut starts = initial_states(trial, base);

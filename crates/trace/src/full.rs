@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 
 use crate::base::Base;
-use crate::candidates::is_alternative_form;
+use crate::candidates::is_alternative;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
@@ -40,7 +40,7 @@ pub fn fit(
 ) -> Vec<FullModel> {
     let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) = candidates
         .iter()
-        .filter(|term| !is_alternative_form(term.effect.as_ref()))
+        .filter(|term| !is_alternative(term.effect.as_ref()))
         .partition(|term| term.effect.has_instant());
     let base_structure = Structure::base(problem.records.len(), problem.time);
     let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());

@@ -142,11 +142,8 @@ impl Structure {
         entries.extend((0..self.deviations()).map(|record| base(2, RECORD_BIAS_SD, Some(record))));
         for term in &self.terms {
             let parameters = term.effect.parameters().iter().zip(&term.priors);
-            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter {
-                parameter,
-                prior,
-                record: term.record,
-            }));
+            let record = term.record;
+            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter { parameter, prior, record }));
         }
         entries
     }

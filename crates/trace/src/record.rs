@@ -82,7 +82,7 @@ impl PreparedRecord {
     }
 
     /// Prepared record with all rows of a trial, without averaging.
-    pub fn with_all_rows(trial: &Trial) -> Self {
+    pub fn unaveraged(trial: &Trial) -> Self {
         Self::new(trial, 1, 1, 1)
     }
 

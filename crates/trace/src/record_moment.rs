@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn replays_of_the_base_find_its_least_squares() {
         let trial = moved(&plain(1, 10.0), |t| 0.01 * (t / 80.0).sin());
-        let record = PreparedRecord::with_all_rows(&trial);
+        let record = PreparedRecord::unaveraged(&trial);
         for inverse_time in [BASE[0], -0.01] {
             let base = FirstOrder { inverse_T: inverse_time, K_over_T: BASE[1], rudder_bias: BASE[2] };
             let moment = RecordMoment::new(&record, &base).expect("enough headings");

@@ -328,8 +328,8 @@ mod tests {
         let base = ship(Vec::new());
         let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
         for duration in HORIZONS_S {
-            let headings = restarted_headings(&base, &PreparedRecord::with_all_rows(&trial), [0.0, 0.0], duration)
-                .expect("a replay");
+            let headings =
+                restarted_headings(&base, &PreparedRecord::unaveraged(&trial), [0.0, 0.0], duration).expect("a replay");
             let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());
             let largest = errors.fold(0.0, f64::max);
             assert!(headings.len() == trial.len() && largest < 1e-5, "{duration} s: {largest}");

@@ -14,7 +14,7 @@ use ship::{Particulars, Regressor};
 use trial::Trial;
 
 use crate::base::Base;
-use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_excluded_by_calm};
+use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_barred_by_calm};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::FullModel;
@@ -301,7 +301,7 @@ impl TraceParts<'_> {
         let excluded = !selection.allows(id);
         let mut effects = selection.effects();
         effects.retain(|form| form.id() == id);
-        let becalmed = effects.iter().any(|form| is_excluded_by_calm(form.as_ref(), None, self.trials, selection));
+        let becalmed = effects.iter().any(|form| is_barred_by_calm(form.as_ref(), None, self.trials, selection));
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use estimation::subsets::{RemovableTerm, conditional_mean};
 use rayon::prelude::*;
 
-use crate::candidates::{is_alternative_form, is_delay};
+use crate::candidates::{is_alternative, is_delay};
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
@@ -108,7 +108,7 @@ fn weigh(
         problem,
         weights: problem.weights(&full.law),
         full,
-        variants: candidates.iter().filter(|term| is_alternative_form(term.effect.as_ref())).collect(),
+        variants: candidates.iter().filter(|term| is_alternative(term.effect.as_ref())).collect(),
         selection,
         rule,
         evaluated: BTreeMap::new(),

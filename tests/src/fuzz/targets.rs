@@ -290,7 +290,7 @@ fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, mea
     let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
     let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
     let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();
-    R::action(formula).yaw_acceleration(&values, &[], &now)
+    R::effect_equations(formula).yaw_acceleration(&values, &[], &now)
 }
 
 /// Assertion that every method gives an estimate or a reason.

@@ -134,7 +134,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let replay = identify::replay::replay(&trial, &base).expect("finite");
     let trials = [trial];
     let time = candidates::ship_time(&trials, base.K_over_T);
-    let problem = FittedRecords::new(vec![PreparedRecord::with_all_rows(&trials[0])], base.inverse_T, time);
+    let problem = FittedRecords::new(vec![PreparedRecord::unaveraged(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
     let all = candidates::all(&problem.records, &trials, time, &selection);
     let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());

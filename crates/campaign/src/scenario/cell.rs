@@ -103,7 +103,7 @@ impl DesignCell {
         let Some(Specification { simulation, further, validation, .. }) = self.specification() else {
             return Vec::new();
         };
-        std::iter::once(simulation).chain(further).chain(validation).map(|made| &made.manoeuvre).collect()
+        std::iter::once(simulation).chain(further).chain(validation).map(|run| &run.manoeuvre).collect()
     }
 
     /// Identifiers of the effects missing from a first-order base in its trials.

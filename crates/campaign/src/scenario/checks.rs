@@ -101,12 +101,8 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::from_dotted("output.marks").child(index);
-        choice_index(
-            &mark.axis,
-            &axis_names,
-            key.child("axis"),
-            ["no axis is called", "expected the name of a sweep"],
-        )?;
+        let problem = ["no axis is called", "expected the name of a sweep"];
+        choice_index(&mark.axis, &axis_names, key.child("axis"), problem)?;
         if !mark.value.is_finite() {
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.value), "expected a number", advice));

@@ -82,11 +82,8 @@ fn asked<'a>(
     let keys: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
     number_table::refuse_unknown(numbers, &keys, &key)?;
     if forms.len() > 1 && numbers.len() != 1 {
-        return Err(reader::name_count_fault(
-            key,
-            numbers.keys(),
-            &keys.iter().map(|entry| entry.key).collect::<Vec<_>>(),
-        ));
+        let names: Vec<_> = keys.iter().map(|entry| entry.key).collect();
+        return Err(reader::name_count_fault(key, numbers.keys(), &names));
     }
     let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|number| number.key == name));
     let form = forms.into_iter().find(has_all).expect("every key is known");

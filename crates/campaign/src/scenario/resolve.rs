@@ -29,12 +29,12 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     };
     simulation.check()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
-    let further = wire.also.iter().enumerate().map(|(index, entry)| {
+    let further_records = wire.also.iter().enumerate().map(|(index, entry)| {
         let context = format!("in the further record {}", index + 1);
         let record = Simulation { recording: entry.recording.unwrap_or(wire.recording), ..simulation.clone() };
         further(entry, record, KeyPath::from_dotted("also").child(index), &context, folder)
     });
-    let further = further.collect::<Result<_, _>>()?;
+    let further_records = further_records.collect::<Result<_, _>>()?;
     // A validation is in a calm and without measurement error, so that the error of a replay is that of the response.
     let validation = wire.validation.as_ref().map(|entry| {
         let record = Simulation {
@@ -51,7 +51,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
         ShipModel::Hull(_) => None,
     };
     let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated_physics(&wire.effect)?);
-    Ok(Specification { further, validation, truth, base, missing, stated, simulation })
+    Ok(Specification { further: further_records, validation, truth, base, missing, stated, simulation })
 }
 
 /// Channels absent from the trials of a scenario.
@@ -89,9 +89,7 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
 /// disturbance.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
-        ShipModel::Response(response) => {
-            response.model().effects().iter().map(|effect| effect.id().to_owned()).collect()
-        }
+        ShipModel::Response(response) => response.model().effects().iter().map(|effect| effect.id().into()).collect(),
         ShipModel::Hull(_) => vec![HULL.to_owned()],
     };
     let sea = &wire.disturbance;

@@ -95,11 +95,9 @@ impl TrialPoints {
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
         let half_width =
             half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
-        let point = |time, heading, rate| CharacteristicPoint {
-            time,
-            heading,
-            rate,
-            rudder_integral: rudder_integral(samples, time),
+        let point = |time, heading, rate| {
+            let rudder_integral = rudder_integral(samples, time);
+            CharacteristicPoint { time, heading, rate, rudder_integral }
         };
         let mut zero_rate_points: Vec<CharacteristicPoint> = points::extrema(time, &off_course, half_width)
             .into_iter()

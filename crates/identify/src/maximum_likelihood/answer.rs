@@ -17,7 +17,7 @@ use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::likelihood::track::{Coefficients, Track, is_backward};
-use crate::output_error::{COURSE_UNSTABLE_WARNING, MAX_CONDITION, MIN_GAIN_DEVIATIONS, response_covariance};
+use crate::output_error::{MAX_CONDITION, MIN_GAIN_DEVIATIONS, UNSTABLE_WARNING, response_covariance};
 use crate::profile::invert;
 use crate::robust;
 use trial::noise_model::{MomentKind, NoiseModel};
@@ -147,8 +147,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
-    warnings
-        .extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE_WARNING)));
+    warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(UNSTABLE_WARNING)));
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
     warnings.extend(at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))

@@ -263,7 +263,7 @@ impl Shape {
     }
 
     /// Number of continuous parameters.
-    pub fn continuous_parameter_count(&self) -> usize {
+    pub fn parameter_count(&self) -> usize {
         self.clone().places(1.0).len()
     }
 

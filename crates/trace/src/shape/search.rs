@@ -290,9 +290,7 @@ impl ShapeSearch<'_> {
         let mut has_moved = false;
         for scale in [1.0, 0.5, 0.25] {
             for number in 0..shapes.len() {
-                for (place, sign) in
-                    (0..shapes[number].shape.continuous_parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)])
-                {
+                for (place, sign) in (0..shapes[number].shape.parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
                     for _ in 0..3 {
                         let Candidate { shape, record, penalty, .. } = *shapes[number];
                         let motion = &self.motions[record.unwrap_or(0)];

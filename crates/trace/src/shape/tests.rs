@@ -141,7 +141,7 @@ fn criteria_are_those_of_dense_matrices() {
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
-    let noise = RecordNoise::new(&PreparedRecord::with_all_rows(&made), 0.1, 40.0, 1);
+    let noise = RecordNoise::new(&PreparedRecord::unaveraged(&made), 0.1, 40.0, 1);
     let weights = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
     let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
     let dense = |count: usize| {
@@ -207,7 +207,7 @@ fn shapes_can_be_moved_and_typed() {
         if let Some(formula) = shape.formula() {
             assert!(Formula::parse(&format!("located = {formula}")).is_ok(), "{formula}");
         }
-        for place in 0..shape.continuous_parameter_count() {
+        for place in 0..shape.parameter_count() {
             let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|moved| moved.moved(place, -1.0, [300.0, 1.0]));
             let text = |shape: &Shape| shape.description([0.0, 300.0]);
             assert!(back.is_some_and(|back| text(&back) == text(shape)), "{shape:?}");

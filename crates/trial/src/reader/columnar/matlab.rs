@@ -17,8 +17,7 @@ use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD_FILE};
 use variable::{
-    ByteCursor, CELL_ARRAY, COMPRESSED_ELEMENT, OtherVariable, Variable, Variables, class_name, contradiction, damaged,
-    size,
+    ByteCursor, CELL_ARRAY, COMPRESSED, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
 };
 
 pub use level4::is_level4;
@@ -111,15 +110,13 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     while !scan.tail.is_empty() {
         let (kind, data) = scan.element().ok_or_else(|| damaged("its last variable is incomplete"))?;
         let unpacked = match kind {
-            COMPRESSED_ELEMENT => unpacked(data, big_endian, &mut left)?,
+            COMPRESSED => unpacked(data, big_endian, &mut left)?,
             MATRIX => Vec::new(),
             _ => continue,
         };
         let mut inner = ByteCursor { tail: &unpacked, big_endian };
         let content = match kind {
-            COMPRESSED_ELEMENT => {
-                inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail)
-            }
+            COMPRESSED => inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail),
             _ => Some(data),
         };
         match content.and_then(|content| variable(content, big_endian)).ok_or_else(contradiction)? {

@@ -4,7 +4,7 @@ use crate::reader::columnar::text;
 use crate::reader::error::Problem;
 
 /// Kind of a data element with a packed one.
-pub const COMPRESSED_ELEMENT: u32 = 15;
+pub const COMPRESSED: u32 = 15;
 
 /// Bytes of a number by the kind of its data element; `None` for a kind without numbers.
 pub fn size(kind: u32) -> Option<usize> {
@@ -80,7 +80,7 @@ impl<'a> ByteCursor<'a> {
         }
         let length = self.word()? as usize;
         let data = self.take(length)?;
-        if tag != COMPRESSED_ELEMENT {
+        if tag != COMPRESSED {
             let filling = (8 - length % 8) % 8;
             self.tail = self.tail.get(filling..).unwrap_or_default();
         }
