@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::effects::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTargets, OperatingPoint, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint, RecordScales,
     listed_effect,
 };
 use ship::replay::{RecordedSignals, replay_states};
@@ -25,8 +25,8 @@ impl Effect for CubicByHand {
         None
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 }
 

@@ -233,8 +233,7 @@ impl AnswerColumns {
             ));
         }
         let is_known = |column: &&str| COLUMNS.split(' ').any(|name| name == *column);
-        let ignored =
-            head.iter().filter(|column| !is_known(column)).take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
+        let ignored = head.iter().filter(|key| !is_known(key)).take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
         Ok(Self { places, ignored })
     }
 

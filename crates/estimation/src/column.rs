@@ -67,8 +67,7 @@ pub struct ColumnProjection {
     pub share: f64,
 }
 
-/// Projection of a column, which is removed in place, on the constant and on `unit` (unit length, zero mean, as many
-/// rows).
+/// Projection of a column, removed in place, on the constant and on `unit` (unit length, zero mean, as many rows).
 pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
     run(Project { unit, column })
 }

@@ -54,8 +54,7 @@ impl Recommendation {
     ) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::from_response(trials, &estimate.response));
         let is_calm = trials.iter().all(Trial::is_calm);
-        let is_random =
-            !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|share| share >= MIN_RANDOM);
+        let is_random = !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|x| x >= MIN_RANDOM);
         let has_moment = |fit: &Estimate| fit.noise.is_some_and(|noise| !noise.moment.is_none());
         let rms = |fit: &Estimate| pooled_response_rms(trials, &fit.response).unwrap_or(f64::INFINITY);
         let is_far = |fit: &Estimate| output_error.is_some_and(|nearest| rms(fit) > MAX_REPLAY_RATIO * rms(nearest));

@@ -219,8 +219,7 @@ fn turned(
     let turn = HeldTurn::from_trial(record).zip(turn::resampled_record(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
     let measured = turn.figures(&passage).into_iter();
-    let shown: Vec<_> =
-        measured.filter_map(|(name, value)| Some((name, Quantity::without_uncertainty(value?)))).collect();
+    let shown: Vec<_> = measured.filter_map(|(key, mean)| Some((key, Quantity::without_uncertainty(mean?)))).collect();
     let Some(rudder) = turn.extended_rudder(record.rudder_signal()).filter(|_| !shown.is_empty()) else {
         return Ok(None);
     };

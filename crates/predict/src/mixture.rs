@@ -196,8 +196,7 @@ impl ShipMixture {
             true => hull.sample(&mut rng, &mut key.indexed_rng(Purpose::Specification, 3)),
             false => hull.stored.values(),
         });
-        let hull =
-            part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.hull_or_most_probable(values));
+        let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, drawn)| hull.hull_or_most_probable(drawn));
         let approach = random_part(UncertaintySource::InitialState, approach_normal * stored.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.stored.beginning_yaw_rate_rad_s);
         let error = random_part(UncertaintySource::ProcessNoise, start_normal * of_hull);

@@ -211,8 +211,7 @@ impl ShipMixture {
             SteadyCurve::from_ship(&self.draw_ship(number, sources), kind.max_rudder(), self.timescale())
         };
         let all: Vec<SteadyCurve> = parallel_draws(draws, |number| curve(number, &UncertaintySource::ALL));
-        let values: Vec<Option<Characteristics>> =
-            all.iter().map(|curve| Some(curve.figures(kind.max_rudder()))).collect();
+        let values: Vec<Option<Characteristics>> = all.iter().map(|run| Some(run.figures(kind.max_rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
@@ -246,8 +245,7 @@ fn predicted(
     sources: &[UncertaintySource],
     draw: impl Fn(u64, &[UncertaintySource]) -> Option<Characteristics> + Sync + Send,
 ) -> IndexMap<String, PredictedFigure> {
-    let alone =
-        |source: &UncertaintySource| parallel_draws(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
+    let alone = |source: &UncertaintySource| parallel_draws(draws.len().div_ceil(RATIO), |k| draw(k, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
         let value = |draw: &Option<Characteristics>| draw.as_ref().and_then(|figures| *figures.get(name)?);

@@ -227,8 +227,7 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
     let period = simulated_manoeuvre::row_interval(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
-        let read =
-            rows.filter(|&row| values[row].is_finite()).map(|row| (trial.time()[row] - trial.time()[0], values[row]));
+        let read = rows.filter(|&k| values[k].is_finite()).map(|k| (trial.time()[k] - trial.time()[0], values[k]));
         let (times, values) = read.unzip();
         let signal = Polyline::new(times, values).ok()?;
         Some((0..count).map(|row| signal.value_at(row as f64 * period)).collect())

@@ -219,8 +219,7 @@ impl Axis {
         let (lo, hi) = (self.lo, self.hi.min(self.last));
         let unit = tick_rule.unit(hi - lo);
         // A single label does not determine the scale, so the step shrinks until there are two.
-        let mut values =
-            (count + 1..count + 20).map(|most| RangedCoordf64::from(lo / unit..hi / unit).key_points(most));
+        let mut values = (count + 1..count + 20).map(|max| RangedCoordf64::from(lo / unit..hi / unit).key_points(max));
         let values: Vec<f64> = values.find(|values| values.len() > 1).unwrap_or_default();
         let values: Vec<f64> = values.into_iter().map(|value| unit * value).collect();
         let labels = linear_labels(&values);

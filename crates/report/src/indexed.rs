@@ -28,8 +28,7 @@ impl IndexedImage {
     /// 256, 128, …, 4 levels per channel that leaves few enough; any other colour becomes the nearest of these.
     pub fn from_rgba(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
-        let runs =
-            || pixels.chunk_by(|pixel, next| pixel == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
+        let runs = || pixels.chunk_by(|p, next| p == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
         // An area has neighbours of the same colour, an edge has few.
         let mut areas: HashMap<Rgb, usize> = HashMap::new();
         runs().for_each(|(colour, length)| *areas.entry(colour).or_default() += length - 1);
@@ -56,8 +55,7 @@ fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
 /// Index of the nearest colour.
 fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
     let distance = |candidate: &Rgb| (0..3).map(|k| u32::from(candidate[k].abs_diff(colour[k])).pow(2)).sum::<u32>();
-    let place =
-        palette.iter().enumerate().min_by_key(|(_, candidate)| distance(candidate)).map_or(0, |(place, _)| place);
+    let place = palette.iter().enumerate().min_by_key(|(_, colour)| distance(colour)).map_or(0, |(place, _)| place);
     place as u8
 }
 

@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{BaseFactors, Effect, EffectReal, EffectTargets, OperatingPoint, Parameter, SwayCoupling};
+use crate::effects::{BaseFactors, Effect, EffectReal, EffectTarget, OperatingPoint, Parameter, SwayCoupling};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -34,7 +34,7 @@ pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
-    acts_on: EffectTargets,
+    acts_on: EffectTarget,
 }
 
 impl Place {

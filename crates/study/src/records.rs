@@ -42,8 +42,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
                 && (!is_simulated || file.with_extension("truth.json").is_file())
         };
         let entries = std::fs::read_dir(path).on("read", path)?;
-        let mut records: Vec<PathBuf> =
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
+        let mut records: Vec<PathBuf> = entries.filter_map(|file| Some(file.ok()?.path())).filter(is_record).collect();
         records.sort();
         if records.is_empty() {
             let endings = ENDINGS.join(", .");
@@ -250,8 +249,7 @@ pub fn late_rudder_message(late: f64) -> String {
 pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let is_in =
         |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
-    let twice =
-        trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
+    let twice = trials.iter().enumerate().filter(|(k, trial)| is_in(&trials[..*k], trial)).map(|(_, trial)| trial);
     let in_both = held_out.iter().filter(|trial| is_in(trials, trial));
     let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
     let idle = "used for identification and for validation; the error on it validates nothing";

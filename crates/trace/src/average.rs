@@ -138,8 +138,7 @@ fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64
 
 /// Weighted median of one row; `total` is the sum of the weights.
 fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
-    let mut values: Vec<(f64, f64)> =
-        columns.iter().zip(weights).map(|(column, weight)| (column[row], *weight)).collect();
+    let mut values: Vec<(f64, f64)> = columns.iter().zip(weights).map(|(draw, weight)| (draw[row], *weight)).collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sum = 0.0;
     let middle = values.iter().find(|(_, weight)| {

@@ -2,7 +2,7 @@
 //! addition to the named effects.
 
 use ship::effects::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, RecordScales,
 };
 use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
@@ -148,8 +148,8 @@ impl Effect for Monomial {
         Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD_RAD))
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {

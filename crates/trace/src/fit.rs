@@ -361,8 +361,7 @@ impl StructureFit {
     pub fn record_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();
-        let kept =
-            self.structure.response_indices(record).into_iter().filter(|&place| entries[place].prior.is_fitted());
+        let kept = self.structure.response_indices(record).into_iter().filter(|&k| entries[k].prior.is_fitted());
         let kept: Vec<usize> = kept.collect();
         Some(DMatrix::from_fn(kept.len(), kept.len(), |i, j| all[(kept[i], kept[j])]))
     }

@@ -38,10 +38,8 @@ pub fn fit(
     with_waves: bool,
     kinds: &[CorrelatedNoise],
 ) -> Vec<FullModel> {
-    let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) = candidates
-        .iter()
-        .filter(|term| !is_alternative(term.effect.as_ref()))
-        .partition(|term| term.effect.has_instant());
+    let kept = candidates.iter().filter(|term| !is_alternative(term.effect.as_ref()));
+    let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) = kept.partition(|term| term.effect.has_instant());
     let base_structure = Structure::base(problem.records.len(), problem.time);
     let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST_NOISE_RATIO * FIRST_NOISE_RATIO) * base.mean_square());

@@ -381,8 +381,7 @@ impl TraceParts<'_> {
             horizons: Vec::new(),
         };
         let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
-        let folds =
-            self.trials.iter().zip(self.leave_one_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
+        let folds = self.trials.iter().zip(self.leave_one_out).filter_map(|(run, fold)| Some((run, fold.as_ref()?)));
         ErrorEntry {
             kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
                 (false, _) => Some(sentences::NO_NAMED_EFFECT_REASON.into()),
@@ -427,7 +426,7 @@ impl TraceParts<'_> {
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading
-                    .and_then(|(kind, _)| kind.correlation_time(self.problem.longest_duration())),
+                    .and_then(|(law, _)| law.correlation_time(self.problem.longest_duration())),
                 heading_wander: heading
                     .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,

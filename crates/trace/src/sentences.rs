@@ -53,8 +53,7 @@ const UNCHANGED_SHARE: f64 = 0.95;
 
 /// Heading errors (deg) of several records, before and after, as root mean squares; `None` if no record has both.
 fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) -> Option<[f64; 2]> {
-    let pairs: Vec<[f64; 2]> =
-        all.iter().filter_map(|record| Some([of(&record.before)?, of(&record.after)?])).collect();
+    let pairs: Vec<[f64; 2]> = all.iter().filter_map(|entry| Some([of(&entry.before)?, of(&entry.after)?])).collect();
     let mean = |when: usize| (pairs.iter().map(|pair| pair[when].powi(2)).sum::<f64>() / pairs.len() as f64).sqrt();
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
 }

@@ -88,8 +88,7 @@ fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedRead
         return None;
     }
     let times = reject(Channel::Rudder, &columns.time, rudder, &wild, rejected);
-    let largest =
-        wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
+    let largest = wild.iter().map(|&k| rudder[k]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
     let mut keep = vec![true; columns.time.len()];
     wild.iter().for_each(|&row| keep[row] = false);
     columns.retain(&keep);
@@ -122,8 +121,7 @@ fn reject(
 ) -> String {
     const SHOWN: usize = 6;
     rejected.extend(rows.iter().map(|&row| RejectedReading { channel, time: time[row], value: values[row] }));
-    let mut shown: Vec<String> =
-        rows.iter().take(SHOWN).map(|&row| rounded_to_thousandth(time[row]).to_string()).collect();
+    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&k| rounded_to_thousandth(time[k]).to_string()).collect();
     shown.extend((rows.len() > SHOWN).then(|| String::from("…")));
     format!("at t = {} s", shown.join(", "))
 }

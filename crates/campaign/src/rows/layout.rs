@@ -69,8 +69,7 @@ impl RowLayout {
     fn columns(&self) -> impl Iterator<Item = (String, ColumnSource<'_>)> {
         let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), ColumnSource::Fixed(column)));
         let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
-        let draws =
-            self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), ColumnSource::Draw(index)));
+        let draws = self.draws.iter().enumerate().map(|(at, key)| (format!("draw.{key}"), ColumnSource::Draw(at)));
         let records = self.records.iter().flat_map(|records| {
             let fitted: fn(&JudgedRecord) -> Option<&str> = |record| Some(record.fitted.as_str());
             let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.validation.as_deref();

@@ -41,8 +41,7 @@ impl Resamples {
         self.batches
     }
 
-    /// Statistics of the same sums, each with a percentile interval. `None` if undefined; no interval below six
-    /// values.
+    /// Statistics of the same sums with percentile intervals. `None` if undefined; no interval below six values.
     pub fn bootstrap<const N: usize>(
         &self,
         batches: &[BatchSums],

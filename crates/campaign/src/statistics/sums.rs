@@ -39,8 +39,7 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
 /// Batch sums of one quantity, in its unit, from which mean, standard deviation and root mean square follow.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorSums {
-    /// First value, which is subtracted from every value so that a large bias does not cancel the digits of a small
-    /// scatter.
+    /// First value, subtracted from every value so that a large bias does not cancel the digits of a small scatter.
     shift: f64,
     batches: Vec<BatchSums>,
 }
@@ -119,8 +118,7 @@ impl PairSums {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Ratio of the root mean square errors, method over reference, in a total of batches; `None` for a reference
-    /// of zero.
+    /// Ratio of root mean square errors, method over reference, in a total of batches; `None` for a reference of zero.
     pub fn rms_ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }

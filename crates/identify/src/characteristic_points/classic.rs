@@ -100,8 +100,7 @@ fn first_three_peaks(points: &TrialPoints) -> Result<SelectedPoints<'_>, Identif
     Ok(SelectedPoints { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
 }
 
-/// Interval from the last instant with r = 0 before a passage, or from the first instant after it if there is none
-/// before.
+/// Interval from the last instant with r = 0 before a passage, or from the first instant after it if none is before.
 fn to_crossing(still: &[CharacteristicPoint], crossing: &CharacteristicPoint) -> Option<Interval> {
     let after = still.partition_point(|point| point.time < crossing.time);
     let from = still.get(after.saturating_sub(1))?;

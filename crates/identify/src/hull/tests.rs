@@ -212,8 +212,7 @@ fn fitted_to(channels: &[Channel]) -> HullEstimate {
             let noise = |value: &f64| value + deviation * random.sample::<f64, _>(StandardNormal);
             (channel, trial.channel(channel).expect("recorded").iter().map(noise).collect::<Vec<f64>>())
         };
-        let channels =
-            channels.iter().map(|channel| read(*channel)).chain([(Channel::Rudder, trial.rudder().to_vec())]);
+        let channels = channels.iter().map(|signal| read(*signal)).chain([(Channel::Rudder, trial.rudder().to_vec())]);
         let columns = Columns { time: trial.time().to_vec(), channels: channels.collect(), unknown: Vec::new() };
         let ship = trial.particulars().expect("declared");
         Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)

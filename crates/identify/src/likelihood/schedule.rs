@@ -86,8 +86,7 @@ impl Schedule {
             return heading.to_vec();
         }
         let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
-        let next =
-            |reading: &Reading| if reading.sensor() == COMPASS_SENSOR { heading.next() } else { yaw_rate.next() };
+        let next = |entry: &Reading| if entry.sensor() == COMPASS_SENSOR { heading.next() } else { yaw_rate.next() };
         let mut column = Vec::with_capacity(self.readings.len());
         column.extend(self.readings.iter().filter_map(next).copied());
         column

@@ -107,8 +107,7 @@ impl PreparedRecords {
         let gyro = settings.yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
         let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
-        let declared =
-            settings.rudder == RudderChoice::Declared && trials.iter().all(|trial| declared_sd(trial).is_some());
+        let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
         let records = tracks
             .into_iter()
@@ -161,8 +160,7 @@ impl PreparedRecords {
         };
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
         let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
-        let maxima: Vec<(f64, Maximum)> =
-            all.into_iter().map(weigh).filter(|(weight, _)| *weight > MIN_WEIGHT).collect();
+        let maxima: Vec<(f64, Maximum)> = all.into_iter().map(weigh).filter(|(share, _)| *share > MIN_WEIGHT).collect();
         let end = maxima[0].1.point.inverse_time;
         let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
         Ok(ChosenLaw { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })

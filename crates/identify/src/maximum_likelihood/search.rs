@@ -204,8 +204,7 @@ impl Search<'_> {
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
             let lower = (0..HALVINGS).find_map(|_| {
                 let (inverse_time, vectors) = self.moved(&point, &free, &(&step * share));
-                let next =
-                    self.evaluate(inverse_time, &vectors).filter(|next| next.restricted < point.restricted + SLACK);
+                let next = self.evaluate(inverse_time, &vectors).filter(|at| at.restricted < point.restricted + SLACK);
                 if next.is_none() {
                     share *= 0.4;
                 }

@@ -79,8 +79,7 @@ pub(super) fn record_symbol(theme: &Theme, heading: &PlotCurve) -> LegendSymbol 
 /// Positions of marks, where those nearer than `gap` are spread about their mean: zig-zags of one rudder angle would
 /// otherwise overlap.
 pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
-    let mut order: Vec<(usize, f64)> =
-        places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
+    let mut order: Vec<(usize, f64)> = places.iter().enumerate().filter_map(|(k, at)| Some((k, (*at)?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut moved = places.to_vec();
     for group in order.chunk_by(|a, b| b.1 - a.1 < gap) {

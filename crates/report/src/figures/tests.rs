@@ -337,8 +337,7 @@ fn large_type_leaves_a_heading_upright() {
     let style = crate::Style { font_size_pt: Some(16.0), ..Default::default() };
     let theme = style.apply_to(Theme::paper(60.0, 300.0).unwrap()).unwrap();
     let figure = Plot::from(zigzag(40, 0.3)).draw("", &theme);
-    let ends: Vec<f64> =
-        numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|end| end.parse().unwrap()).collect();
+    let ends: Vec<f64> = numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|x| x.parse().unwrap()).collect();
     assert!(ends[0] < -20.0 && ends[1] > 20.0 && ends[1] - ends[0] < 400.0, "{ends:?}");
 }
 

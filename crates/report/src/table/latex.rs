@@ -174,8 +174,7 @@ fn head(set: &[LatexColumn]) -> String {
     let mut out = String::from("    \\toprule\n");
     for line in 0..lines {
         let heading_line = |column: &LatexColumn| (line + column.heading.len()).checked_sub(lines);
-        let cell =
-            |column: &LatexColumn| heading_line(column).map_or_else(String::new, |line| column.heading[line].clone());
+        let cell = |column: &LatexColumn| heading_line(column).map_or_else(String::new, |k| column.heading[k].clone());
         out += &format!("    {} \\\\\n", set.iter().map(cell).collect::<Vec<_>>().join(" & "));
     }
     out + "    \\midrule\n"

@@ -3,8 +3,7 @@
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
-    RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use crate::angle::DEGREE;
 use estimation::number::Real;
@@ -39,8 +38,8 @@ impl Effect for Backlash {
         Some(CandidateEffect::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::RUDDER
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::RUDDER
     }
 
     fn states(&self) -> usize {

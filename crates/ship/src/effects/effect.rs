@@ -131,7 +131,7 @@ pub struct SwayCoupling<R = f64> {
 
 /// Targets of an effect in addition to its states; the equations of other targets are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct EffectTargets {
+pub struct EffectTarget {
     /// `true` if the effect transforms the acting rudder.
     pub rudder: bool,
     /// `true` if the effect scales damping and gain.
@@ -140,7 +140,7 @@ pub struct EffectTargets {
     pub moment: bool,
 }
 
-impl EffectTargets {
+impl EffectTarget {
     /// No quantity.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
@@ -211,7 +211,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect>;
 
     /// Quantities on which the effect acts.
-    fn acts_on(&self) -> EffectTargets;
+    fn acts_on(&self) -> EffectTarget;
 
     /// Number of states of the effect.
     fn states(&self) -> usize {

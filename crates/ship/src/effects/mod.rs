@@ -24,7 +24,7 @@ mod wave_heading;
 
 pub use backlash::Backlash;
 pub use effect::{
-    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTargets, OperatingPoint,
+    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
     Parameter, Prior, RecordScales, SwayCoupling,
 };
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};

@@ -3,7 +3,7 @@
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, Parameter, Prior, RecordScales, SwayCoupling,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, Prior, RecordScales, SwayCoupling,
 };
 use estimation::number::Real;
 
@@ -39,8 +39,8 @@ impl Effect for SecondOrder {
         Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::NONE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::NONE
     }
 
     /// One state, s of [`crate::response`], which the response integrates.

@@ -5,8 +5,8 @@
 use std::sync::Arc;
 
 use super::effect::{
-    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter,
-    Prior, RecordScales,
+    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior,
+    RecordScales,
 };
 use super::scenario_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
@@ -141,8 +141,8 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::SCALE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {

@@ -1,8 +1,7 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
-    RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use estimation::number::Real;
 
@@ -54,10 +53,10 @@ impl Effect for SteeringLag {
         })
     }
 
-    fn acts_on(&self) -> EffectTargets {
+    fn acts_on(&self) -> EffectTarget {
         match self {
-            Self::DeadTime => EffectTargets::NONE,
-            Self::FirstOrder => EffectTargets::RUDDER,
+            Self::DeadTime => EffectTarget::NONE,
+            Self::FirstOrder => EffectTarget::RUDDER,
         }
     }
 

@@ -3,8 +3,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Parameter, Prior,
-    RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
@@ -93,8 +92,8 @@ impl Effect for TransientDisturbance {
         Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 
     fn min_time_constant(&self, p: &[f64]) -> f64 {

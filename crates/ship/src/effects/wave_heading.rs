@@ -2,7 +2,7 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{CandidateEffect, Description, Effect, EffectEquations, EffectTargets, Parameter, RecordScales};
+use super::effect::{CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, RecordScales};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
@@ -36,8 +36,8 @@ impl Effect for WaveHeading {
         None
     }
 
-    fn acts_on(&self) -> EffectTargets {
-        EffectTargets::NONE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::NONE
     }
 
     fn is_environmental(&self) -> bool {

@@ -178,10 +178,8 @@ impl HullForm {
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
             is_valid.then(|| Self { equations, coefficients, covariance }.with_windage(prior))
         };
-        Some([
-            form(FormEquations::Quadratic, &QUADRATIC_TERMS, quadratic)?,
-            form(FormEquations::Cubic, &CUBIC_TERMS, cubic)?,
-        ])
+        let quadratic = form(FormEquations::Quadratic, &QUADRATIC_TERMS, quadratic)?;
+        Some([quadratic, form(FormEquations::Cubic, &CUBIC_TERMS, cubic)?])
     }
 
     /// MMG form with the priors of its coefficients.

@@ -281,8 +281,7 @@ pub fn over_axes(
         return Vec::new();
     }
     let is_worth_it = |group: &ChartGroup| {
-        let records =
-            |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.performance(cell, method));
+        let records = |&cell: &usize| (0..design.methods.len()).filter_map(move |k| summary.performance(cell, k));
         group.cells.iter().flat_map(records).any(says_something)
     };
     let parts: Vec<&[ChartGroup]> = match number {

@@ -232,8 +232,7 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
 /// Files of renamed records, reasons of failed methods, and zig-zag characteristics of the records.
 fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let renamed = curves.records.iter().filter(|record| record.is_renamed);
-    let renamed =
-        renamed.map(|record| format!("{} is {}\n", names::record(&record.name), record.file)).collect::<String>();
+    let renamed = renamed.map(|run| format!("{} is {}\n", names::record(&run.name), run.file)).collect::<String>();
     let failed = |entry: &MethodEntry| Some(format!("{} failed: {}\n", entry.method, entry.reason.as_ref()?));
     let failed = document.methods.iter().filter_map(failed).collect::<String>();
     let mut notes: String =

@@ -72,8 +72,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
                 let look = curve_origin(design, method).look();
-                let violin =
-                    |shape: &summary::ErrorDensity| RowKind::Violin(look, shape.density.clone(), shape.quantiles);
+                let violin = |pdf: &summary::ErrorDensity| RowKind::Violin(look, pdf.density.clone(), pdf.quantiles);
                 density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
             })
             .collect(),

@@ -54,8 +54,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
     let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval().texts(["sd"]);
     let mut table = Table::new(head.numbers(["T′"]).interval().texts(["sd"]));
-    let sd =
-        |quantity: &Quantity| quantity.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
+    let sd = |value: &Quantity| value.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
     for (name, k, t) in rows {
         let mut cells = vec![name.clone()];
         for quantity in [k, t] {

@@ -163,8 +163,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
     const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
-    let parts: Vec<(&str, &str)> =
-        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or(("", label))).collect();
+    let parts: Vec<(&str, &str)> = rules.iter().map(|(name, ..)| name.split_once(", ").unwrap_or(("", name))).collect();
     let kinds = distinct(parts.iter().map(|(kind, _)| *kind));
     let variants = distinct(parts.iter().map(|(_, variant)| *variant));
     let column = |title: &str, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {

@@ -160,8 +160,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     );
     assert_eq!(paragraphs.next(), Some("![Figure 1](staircase.png)"));
     let numbers = report.match_indices("![Figure ").map(|(at, mark)| report[at + mark.len()..].split(']').next());
-    let numbers: Vec<usize> =
-        numbers.map(|number| number.and_then(|own| own.parse().ok()).expect("a number")).collect();
+    let numbers: Vec<usize> = numbers.map(|cell| cell.and_then(|text| text.parse().ok()).expect("a cell")).collect();
     assert_eq!(numbers, (1..=numbers.len()).collect::<Vec<_>>(), "figures are numbered without gaps");
     let page = desk.text("t/report.html");
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");

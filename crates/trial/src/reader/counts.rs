@@ -119,8 +119,7 @@ pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     };
     let sides: Vec<usize> = (0..columns.len()).filter(|&index| is_side(&columns[index])).collect();
     let [side] = sides[..] else { return None };
-    let is_rudder =
-        |column: &RawColumn| matches!(column.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
+    let is_rudder = |raw: &RawColumn| matches!(raw.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
     let rudder = columns.iter().position(is_rudder)?;
     if !columns[rudder].values.iter().all(|value| value.is_nan() || *value >= 0.0) {
         return None;

@@ -17,7 +17,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use estimation::number::Real;
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTargets, OperatingPoint, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Prior, RecordScales,
 };
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
@@ -61,9 +61,9 @@ impl MirrorSymmetry {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`EffectTargets::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTargets::MOMENT`] for a yaw
+    /// [`EffectTarget::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTarget::MOMENT`] for a yaw
     /// acceleration, rad/s²: `K_over_T` times the moment as equivalent rudder angle.
-    pub(super) acts_on: EffectTargets,
+    pub(super) acts_on: EffectTarget,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
     /// Prior of every constant.
@@ -80,7 +80,7 @@ pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
-    acts_on: EffectTargets,
+    acts_on: EffectTarget,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: RecordConstants,
@@ -151,7 +151,7 @@ impl Formula {
             channels: program.channels(),
             program,
             description,
-            acts_on: EffectTargets::MOMENT,
+            acts_on: EffectTarget::MOMENT,
             of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
@@ -255,7 +255,7 @@ impl Effect for Formula {
         Some(CandidateEffect::new(effect, priors))
     }
 
-    fn acts_on(&self) -> EffectTargets {
+    fn acts_on(&self) -> EffectTarget {
         self.acts_on
     }
 

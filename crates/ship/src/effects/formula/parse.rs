@@ -3,7 +3,7 @@
 //! Source: Aho, Lam, Sethi and Ullman (2006), Compilers, second edition, section 4.4.
 
 use super::program::{
-    FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK_VALUES,
+    FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK_SIZE,
 };
 
 /// Maximum number of characters in a formula.
@@ -115,8 +115,8 @@ impl FormulaParser {
             Instruction::Operate(_) => self.waiting -= 1,
             _ => {}
         }
-        if self.waiting > STACK_VALUES {
-            let problem = format!("more than {STACK_VALUES} intermediate values; use fewer brackets");
+        if self.waiting > STACK_SIZE {
+            let problem = format!("more than {STACK_SIZE} intermediate values; use fewer brackets");
             return Err(self.error(self.at, problem));
         }
         self.program.instructions.push(step);

@@ -106,8 +106,7 @@ impl<'a> ChosenInstruments<'a> {
         }
         if always || !unused.is_empty() {
             let mut text = format!("{what} from {} ({})", chosen.name(), counted(chosen.readings, "reading"));
-            let names: Vec<String> =
-                unused.iter().map(|offer| format!("{} ({})", offer.name(), offer.readings)).collect();
+            let names: Vec<String> = unused.iter().map(|seen| format!("{} ({})", seen.name(), seen.readings)).collect();
             match names.as_slice() {
                 [] => {}
                 [name] => text.push_str(&format!("; {name} is not used")),
