@@ -356,7 +356,7 @@ impl DrawingBackend for Svg {
     }
 }
 
-/// Opacity attribute of translucent ink; an attribute of the whole element would need a layer of its own, slow to draw.
+/// Opacity attribute of translucent ink; an attribute of the whole element would need a separate layer, slow to draw.
 fn opacity(ink: &str, alpha: f64) -> String {
     if alpha < 1.0 { format!(" {ink}-opacity=\"{alpha}\"") } else { String::new() }
 }

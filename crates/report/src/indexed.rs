@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 /// Maximum number of colours of a palette with one-byte indices.
 const MAX_COLOURS: usize = 256;
 
-/// Number of colours that are never merged: those of the largest areas.
+/// Number of colours that are never merged: the colours of the largest areas.
 const FLAT: usize = 128;
 
 /// Opaque image of few colours.

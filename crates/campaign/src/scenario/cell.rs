@@ -123,7 +123,7 @@ impl DesignCell {
         stated.clone().or_else(|| MissingPhysics::from_effects(missing, is_disturbed))
     }
 
-    /// `true` for a first-order base with effects, whose K and T differ from those of the nearest first-order response.
+    /// `true` for a first-order base with effects, not equal to the nearest first-order response in K and T.
     pub fn has_own_indices(&self) -> bool {
         self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
     }

@@ -193,7 +193,7 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Drawing)> {
 
 /// Every number of an attribute in the document.
 fn numbers<'a>(svg: &'a str, attribute: &str) -> Vec<&'a str> {
-    svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+    svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|tail| tail.split('"').next()).collect()
 }
 
 /// The document without the parts clipped at a frame.
