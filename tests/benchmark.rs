@@ -42,7 +42,7 @@ fn the_published_leaderboards_follow_from_the_stored_answers() {
         let cases: Vec<&BenchCase> =
             results.cases.iter().filter(|case| case.task == board.task && case.field == board.field).collect();
         for standing in &board.standings {
-            let scores: Vec<f64> = cases.iter().filter_map(|case| case.score_of(&standing.method)).collect();
+            let scores: Vec<f64> = cases.iter().filter_map(|case| case.method_score(&standing.method)).collect();
             let median = standing.median.value.unwrap_or(f64::INFINITY);
             let half = scores.len().div_ceil(2);
             assert_eq!(scores.len(), board.cases);

@@ -120,7 +120,7 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let verdict = document.verdict.as_ref().expect("there is an answer");
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
     let own = entry.parameters.expect("it answered");
-    let warnings: Vec<String> = document.answer_warnings().map(ToString::to_string).collect();
+    let warnings: Vec<String> = document.verdict_warnings().map(ToString::to_string).collect();
     let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), warnings.join("\n"));
     Ok(([own.k_per_s, own.t_s], words))
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use kempf_tests::records::zig_zag;
 use ship::angle::{from_deg, to_deg};
-use ship::ships::{self, Model, kvlcc2, mariner, seiun_like, tanker};
+use ship::ships::{self, ShipModel, kvlcc2, mariner, seiun_like, tanker};
 use ship::vessel::abkowitz::Abkowitz;
 use ship::vessel::mmg::{BySign, Mmg, Parameters, Wake};
 use ship::{FirstOrder, Particulars, Polyline, Ship};
@@ -99,7 +99,7 @@ fn evened(mut parameters: Parameters) -> Parameters {
 }
 
 fn has_sides(ship: &Ship) -> bool {
-    matches!(ship.model, Model::Hull(_)) && ship.id != "s175"
+    matches!(ship.model, ShipModel::Hull(_)) && ship.id != "s175"
 }
 
 /// Response ships and S175 have no side; other hulls are evened first: the propeller force of the Mariner and the

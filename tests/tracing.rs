@@ -370,7 +370,7 @@ fn one_amplitude_is_blind_for_stall_and_two_are_not() {
     let prospects = alone.prospects(&planned);
     assert_eq!(prospects[0].name, "30/30");
     assert!(prospects[0].revealed.iter().any(|name| name.contains("rudder saturation")), "{:?}", prospects[0]);
-    assert!(prospects[1].still_hidden.iter().any(|name| name.contains("rudder saturation")), "{:?}", prospects[1]);
+    assert!(prospects[1].unobservable.iter().any(|name| name.contains("rudder saturation")), "{:?}", prospects[1]);
     let both = analysed(&[small, large], &[]);
     assert!(is_named(&both, "rudder_saturation"), "named {:?}", names(&both));
 }

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use ship::effects::{
-    Action, ActsOn, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, RecordScales, listed_effect,
+    CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint, RecordScales,
+    listed_effect,
 };
 use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
@@ -24,12 +25,12 @@ impl Effect for CubicByHand {
         None
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 }
 
-impl<R: Real> Action<R> for CubicByHand {
+impl<R: Real> EffectEquations<R> for CubicByHand {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let r = now.yaw_rate;
         -p[0] * r * r * r

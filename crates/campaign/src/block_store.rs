@@ -13,7 +13,7 @@ use crate::block::Block;
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{BLOCK_TIMINGS, ROWS};
+use crate::files::{ROWS_FOLDER, TIMINGS_FOLDER};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
@@ -53,7 +53,7 @@ impl<'a> BlockStore<'a> {
 
     /// File of a block.
     pub fn path(&self, block: Block) -> PathBuf {
-        self.folder.join(ROWS).join(rows_name(block))
+        self.folder.join(ROWS_FOLDER).join(rows_name(block))
     }
 
     /// Rows of a block, of complete trials from its first on; empty without a file. The inner error describes a damaged
@@ -75,7 +75,7 @@ impl<'a> BlockStore<'a> {
     /// Fails as [`BlockStore::read`] does, and if the file was damaged since.
     pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
         self.read(block)?.map_err(|problem| {
-            Failure::work(format!("{problem}; the file changed during this run; run the study again"))
+            Failure::execution(format!("{problem}; the file changed during this run; run the study again"))
         })
     }
 
@@ -119,14 +119,14 @@ impl<'a> BlockStore<'a> {
     pub fn write(&self, block: Block, rows: &[StudyRow], timings: &Timings) -> Result<(), Failure> {
         let results = ResultFolder::make(&self.folder)?;
         let bytes = encode(rows, &self.label(block), &self.layout);
-        let bytes = bytes.map_err(|error| Failure::work(format!("{}: {error}", self.path(block).display())))?;
-        results.subfolder(BLOCK_TIMINGS)?.write(&timings_name(block), timings.to_csv(self.design)?)?;
-        results.subfolder(ROWS)?.write(&rows_name(block), bytes)
+        let bytes = bytes.map_err(|error| Failure::execution(format!("{}: {error}", self.path(block).display())))?;
+        results.subfolder(TIMINGS_FOLDER)?.write(&timings_name(block), timings.to_csv(self.design)?)?;
+        results.subfolder(ROWS_FOLDER)?.write(&rows_name(block), bytes)
     }
 
     /// Timings of a block; empty if they are missing or damaged. Fails if the file cannot be read.
     pub fn timings(&self, block: Block) -> Result<Timings, Failure> {
-        let path = self.folder.join(BLOCK_TIMINGS).join(timings_name(block));
+        let path = self.folder.join(TIMINGS_FOLDER).join(timings_name(block));
         let text = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)?.unwrap_or_default();
         Ok(Timings::from_csv(&text, self.design).unwrap_or_default())
     }
@@ -165,7 +165,7 @@ impl<'a> BlockStore<'a> {
 
 /// Blocks of a result folder, from the file names.
 fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
-    let rows = folder.join(ROWS);
+    let rows = folder.join(ROWS_FOLDER);
     if !disk::is_there(&rows).on("look for", &rows)? {
         return Ok(Vec::new());
     }
@@ -180,7 +180,7 @@ pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
 
 /// Removes all blocks of a folder, of any study.
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
-    for (name, extension) in [(ROWS, "parquet"), (BLOCK_TIMINGS, "csv")] {
+    for (name, extension) in [(ROWS_FOLDER, "parquet"), (TIMINGS_FOLDER, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
             folder.subfolder(name)?.remove_all(|file| stem_of(file, extension).is_some())?;
         }

@@ -21,7 +21,7 @@ use coloured::CompassError;
 /// noise, for two random moments at once, for a compass with white and coloured error combined with another noise, and
 /// for a record that does not determine the ship.
 ///
-/// The information of the records adds; each has its own initial state.
+/// The information of the records adds; each has a separate initial state.
 pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[SimulatedTrial],
@@ -68,12 +68,10 @@ fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstO
     })
 }
 
-/// Noise law of a simulation in the terms of the first-order likelihood: its `compass` errors, and all other
-/// noise.
+/// Noise law of a simulation in terms of the first-order likelihood: its `compass` errors, and all other noise.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
-    let is_right =
-        [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|error| error.unwrap_or(0.0) == 0.0);
+    let is_right = [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|size| size.unwrap_or(0.0) == 0.0);
     let read = recording.rudder == RudderSource::Feedback;
     // A moment is expressed as the rudder angle of equal moment.
     let b = truth.K_over_T;

@@ -18,7 +18,7 @@ use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::{Machine, Manifest};
 use crate::observer::Observer;
-use crate::plan::{TrialPlan, blocks_of, max_trials};
+use crate::plan::{TrialPlan, max_trials, shard_blocks};
 use crate::rows::StudyRow;
 use crate::scenario::records::DATA_FOLDER_VARIABLE;
 use crate::scenario::{DesignCell, Scenario};
@@ -47,9 +47,9 @@ pub fn collect(
 ) -> Result<StoredStudy, Failure> {
     let run = run(scenario, Shard::WHOLE, folder, restart, observer)?;
     if run.computed == 0 && run.manifest.is_finished() {
-        let current = Manifest::new(scenario).of_program_and_machine(&run.manifest);
-        if let Ok(stored) = StoredStudy::of(folder.path(), run.manifest.clone()) {
-            let design = stored.design.with_descriptions_of(scenario);
+        let current = Manifest::new(scenario).with_program_and_machine(&run.manifest);
+        if let Ok(stored) = StoredStudy::from_manifest(folder.path(), run.manifest.clone()) {
+            let design = stored.design.with_renewed_descriptions(scenario);
             return stored.with_descriptions(current, design, folder);
         }
     }
@@ -77,7 +77,7 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     if manifest.is_finished() {
         return StoredStudy::read(folder.path());
     }
-    let scenario = Scenario::read(&folder.path().join(files::MANIFEST), None)?;
+    let scenario = Scenario::read(&folder.path().join(files::MANIFEST_FILE), None)?;
     check_same_study(&manifest, &Manifest::new(&scenario), folder.path())?;
     let design = Design::from_scenario(&scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
@@ -116,7 +116,7 @@ fn run(
     let manifest = begin(scenario, folder, restart)?;
     let design = Design::from_scenario(scenario);
     let store = BlockStore::new(folder.path(), &manifest, &design);
-    let part = blocks_of(scenario, shard);
+    let part = shard_blocks(scenario, shard);
     let most = max_trials(scenario, &part);
     if scenario.max_trials() == 0 {
         return Err(no_records(scenario));
@@ -138,7 +138,7 @@ fn run(
     let progress = Progress { most, before, folder: folder.path() };
     let computed = run_all(scenario, &mut plan, &store, &progress, observer);
     // Another process may have added the wall time of its shards meanwhile.
-    let before = Manifest::read(&folder.path().join(files::MANIFEST))?.unwrap_or_else(|| manifest.clone());
+    let before = Manifest::read(&folder.path().join(files::MANIFEST_FILE))?.unwrap_or_else(|| manifest.clone());
     let wall_time_s = before.machine.wall_time_s + start.elapsed().as_secs_f64();
     let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
     manifest.write(folder)?;
@@ -172,14 +172,14 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
     }
     if restart {
         // The manifest is written first: rows without a manifest belong to no study.
-        folder.remove_all(|name| [files::MANIFEST, files::LEGACY_ROWS].contains(&name))?;
+        folder.remove_all(|name| [files::MANIFEST_FILE, files::LEGACY_ROWS_FILE].contains(&name))?;
         block_store::discard(folder)?;
     } else if block_store::has_blocks(folder.path())? {
         return Err(Failure::input(format!(
             "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart \
              to discard them",
             folder.path().display(),
-            files::MANIFEST
+            files::MANIFEST_FILE
         )));
     }
     current.write(folder)?;
@@ -261,7 +261,7 @@ fn run_all(
                  --restart",
                 progress.before + computed,
                 progress.most,
-                progress.folder.join(files::ROWS).display()
+                progress.folder.join(files::ROWS_FOLDER).display()
             ))
         };
         match end? {
@@ -399,7 +399,7 @@ fn add_bounds(scenario: &Scenario, design: &mut Design) {
 fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<StoredStudy, Failure> {
     let design = designed(scenario, &run.trials);
     let shown = if scenario.prose.output.showcase { scenario.cells.len() } else { 0 };
-    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
+    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::from_cell(scenario, cell)).collect();
     let mut timings = Timings::default();
     let store = BlockStore::new(folder.path(), &run.manifest, &design);
     for (block, _) in store.design_blocks() {

@@ -109,7 +109,7 @@ impl Design {
     }
 
     /// Design with cell facts renewed from a scenario; trials and bounds stay.
-    pub(crate) fn with_descriptions_of(&self, scenario: &Scenario) -> Self {
+    pub(crate) fn with_renewed_descriptions(&self, scenario: &Scenario) -> Self {
         let mut design = Self::from_scenario(scenario);
         for (cell, stored) in design.cells.iter_mut().zip(&self.cells) {
             (cell.trials, cell.bound_percent2) = (stored.trials.clone(), stored.bound_percent2);

@@ -22,7 +22,7 @@ pub struct File {
 }
 
 impl File {
-    fn of(path: &Path, open: impl FnOnce() -> io::Result<fs::File>) -> io::Result<Self> {
+    fn from_opened(path: &Path, open: impl FnOnce() -> io::Result<fs::File>) -> io::Result<Self> {
         Ok(Self { file: at(path, open)?, path: path.to_owned() })
     }
 
@@ -33,12 +33,12 @@ impl File {
 
     /// Opens a regular file for reading. Fails for any other kind: opening a pipe would block for ever.
     pub fn open(path: &Path) -> io::Result<Self> {
-        Self::of(path, || regular(path).and_then(|_| fs::File::open(path)))
+        Self::from_opened(path, || regular(path).and_then(|_| fs::File::open(path)))
     }
 
     /// Creates a new file; links are not followed. Fails if the name is taken.
     pub fn create_new(path: &Path) -> io::Result<Self> {
-        Self::of(path, || fs::File::create_new(path))
+        Self::from_opened(path, || fs::File::create_new(path))
     }
 }
 

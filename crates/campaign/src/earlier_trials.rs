@@ -10,7 +10,7 @@ use ship::vessel::prior::HullParticulars;
 /// Hulls of an identified ship, as priors of later fits.
 ///
 /// Fails for a stored hull that this program cannot read.
-pub fn hulls_of(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError> {
+pub fn earlier_hulls(ship: &IdentifiedShip) -> Result<Vec<EarlierHull>, PredictError> {
     ship.hulls.iter().map(earlier_hull).collect()
 }
 

@@ -38,7 +38,7 @@ pub struct TrialOutcome {
 /// Prefixes of failures of the trial itself, not of a method.
 const NO_TRIAL: [&str; 2] = ["specification:", "simulation:"];
 
-/// `true` if a failure is that of a method on a trial that could be simulated.
+/// `true` for the failure of a method on a trial that could be simulated.
 pub fn is_method_failure(failure: &str) -> bool {
     !NO_TRIAL.iter().any(|begin| failure.starts_with(begin))
 }
@@ -211,11 +211,11 @@ impl TrialInput<'_> {
                     time,
                 )
             }
-            Procedure::StraightOn => (Ok(self.row_of_straight_course(&blank)), start.elapsed()),
+            Procedure::StraightOn => (Ok(self.straight_course_row(&blank)), start.elapsed()),
             first_order => {
                 let answer = first_order.identify(self.trials, self.key).expect("it is no trace");
                 let time = start.elapsed();
-                let row = answer.map(|estimate| self.row_of_estimate(&blank, &estimate));
+                let row = answer.map(|estimate| self.estimate_row(&blank, &estimate));
                 (row.map_err(|error| error.row_text().into()), time)
             }
         };
@@ -223,7 +223,7 @@ impl TrialInput<'_> {
     }
 
     /// Row of a first-order estimate.
-    pub fn row_of_estimate(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
+    pub fn estimate_row(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_response_rms(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
         StudyRow {
@@ -240,7 +240,7 @@ impl TrialInput<'_> {
     }
 
     /// Row of the null model, a ship that keeps her heading; the initial heading is fitted, as in every method.
-    pub fn row_of_straight_course(&self, blank: &StudyRow) -> StudyRow {
+    pub fn straight_course_row(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
             let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
             let sums = |sums: [f64; 2], moments: Moments| [sums[0] + moments.second, sums[1] + moments.count];
@@ -259,11 +259,11 @@ impl TrialInput<'_> {
     fn row_of_validated_trace(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
         let validation = validation.and_then(|trial| analysis.replay_in_calm(trial, [trial.heading()[0], 0.0]));
-        self.row_of_trace(blank, analysis, validation.as_ref())
+        self.trace_row(blank, analysis, validation.as_ref())
     }
 
     /// Row of a trace: K, T and δ_r of the augmented model, replay errors, and named effects.
-    pub fn row_of_trace(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
+    pub fn trace_row(&self, blank: &StudyRow, analysis: &Analysis, validation: Option<&ReplayResult>) -> StudyRow {
         let document = &analysis.document;
         let end = self.trials.iter().filter_map(|trial| trial.time().last().copied()).fold(0.0, f64::max);
         let probability =
@@ -327,7 +327,7 @@ fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
 /// Kind of failure of a trace.
 pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
     match error {
-        TraceError::Settings(_) | TraceError::Asked { .. } => "settings",
+        TraceError::Settings(_) | TraceError::NoCandidate { .. } => "settings",
         TraceError::Base(error) => error.kind(),
         TraceError::Replay { .. } => "not-finite",
     }
@@ -339,8 +339,8 @@ const MIN_PROBABILITY: f64 = 0.005;
 /// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
 const DIGITS: f64 = 1000.0;
 
-/// Difference of log evidence between the one missing effect and the best other effect; `None` unless exactly one is
-/// missing.
+/// Difference of log evidence between the missing effect and the best other effect; `None` unless exactly one effect
+/// is missing.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {

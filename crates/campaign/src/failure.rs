@@ -1,4 +1,4 @@
-//! Failure as shown to a user: one message, and who has to act.
+//! Failure as reported to a user: its kind, one message, and the parts of the message for programs.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -13,11 +13,11 @@ use serde::Serialize;
 /// Prefix of the message of a failure.
 const ERROR: &str = "error: ";
 
-/// Failure of a command, as it is reported to the user.
+/// Failure of a command, as reported to the user: kind, message, and its parts for programs.
 #[derive(Debug)]
 pub struct Failure {
     /// Kind of failure: wrong input, failed work, or a request to stop.
-    pub blame: Blame,
+    pub kind: FailureKind,
     /// Whole message, without the word "error" in front.
     pub message: String,
     /// Parts of the message, for programs.
@@ -46,7 +46,8 @@ pub struct FailureParts {
 /// Kind of failure, which determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Blame {
+#[schemars(rename = "Blame")]
+pub enum FailureKind {
     /// The input is wrong: usage, scenario or record.
     Input,
     /// The work could not be done: a full disk, a folder that cannot be written.
@@ -56,31 +57,31 @@ pub enum Blame {
 }
 
 impl Failure {
-    fn new(blame: Blame, message: String, parts: FailureParts) -> Self {
-        Self { blame, message, parts: Box::new(parts) }
+    fn new(kind: FailureKind, message: String, parts: FailureParts) -> Self {
+        Self { kind, message, parts: Box::new(parts) }
     }
 
     /// Failure of wrong input.
     pub fn input(message: impl fmt::Display) -> Self {
         let message = message.to_string();
-        Self::new(Blame::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
+        Self::new(FailureKind::Input, message.clone(), FailureParts { problem: message, ..FailureParts::default() })
     }
 
     /// Failure of wrong input in a file of this name.
     pub fn in_file(file: &(impl AsRef<Path> + ?Sized), problem: impl fmt::Display) -> Self {
         let (file, problem) = (file.as_ref().display().to_string(), problem.to_string());
         let message = format!("{file}: {problem}");
-        Self::new(Blame::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
+        Self::new(FailureKind::Input, message, FailureParts { file: Some(file), problem, ..FailureParts::default() })
     }
 
-    /// Failure of work that could not be done.
-    pub fn work(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
+    /// Failure of the execution on valid input, such as a full disk; error code `work`.
+    pub fn execution(message: impl fmt::Display) -> Self {
+        Self { kind: FailureKind::Work, ..Self::input(message) }.with_code(ErrorCode::Work)
     }
 
     /// Failure of a stop on request.
     pub fn interrupted(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
+        Self { kind: FailureKind::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
     }
 
     /// Failure with an error code.
@@ -111,7 +112,7 @@ impl Failure {
             help: Some(advice.to_string()),
             file: Some(name),
         };
-        Self::new(Blame::Input, shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned(), parts)
+        Self::new(FailureKind::Input, shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned(), parts)
     }
 }
 
@@ -147,7 +148,7 @@ impl<T, E: Error> OnPath<T> for Result<T, E> {
     fn on(self, action: &str, path: &Path) -> Result<T, Failure> {
         self.map_err(|error| {
             let file = path.display().to_string();
-            let mut failure = Failure::work(format!("failed to {action} {file}: {}", with_causes(&error)));
+            let mut failure = Failure::execution(format!("failed to {action} {file}: {}", with_causes(&error)));
             failure.parts.file = Some(file);
             failure
         })
@@ -180,7 +181,7 @@ mod tests {
     fn the_word_error_is_told_once_and_only_in_front() {
         let failures = [
             Failure::input("no such thing"),
-            Failure::work("no such thing"),
+            Failure::execution("no such thing"),
             Failure::in_text(Path::new("a.toml"), "seed = -1\n", 7..9, "no such thing", "expected more", "change it"),
         ];
         for failure in failures {
@@ -206,7 +207,7 @@ mod tests {
         assert_eq!((about.parts.file.as_deref(), about.parts.problem.as_str()), (Some("b.csv"), "it is empty"));
         assert_eq!(about.message, "b.csv: it is empty");
         let io = Err::<(), _>(std::io::Error::other("full")).on("write", Path::new("c")).expect_err("it failed");
-        assert_eq!((io.blame, io.parts.code, io.parts.file.as_deref()), (Blame::Work, ErrorCode::Work, Some("c")));
+        assert_eq!((io.kind, io.parts.code, io.parts.file.as_deref()), (FailureKind::Work, ErrorCode::Work, Some("c")));
     }
 
     #[test]

@@ -29,7 +29,8 @@ impl ResultFolder {
     /// Fails if it cannot be created.
     pub fn make(path: &Path) -> Result<Self, Failure> {
         disk::create_folder(path).map_err(|error| {
-            Failure::work(format!("failed to make the folder {}: {error}; give another one with --out", path.display()))
+            let place = path.display();
+            Failure::execution(format!("failed to make the folder {place}: {error}; give another one with --out"))
         })?;
         Ok(Self { path: path.to_owned() })
     }

@@ -1,6 +1,6 @@
 //! Identified ship of an estimate or a trace, for predictions: structures, noise, steering gear, valid range, hulls.
 
-use document::identified_hull::{by_keys, rows_of};
+use document::identified_hull::{keyed_particulars, matrix_rows};
 use document::{
     HeadingNoise, IdentifiedCoefficient, IdentifiedEffect, IdentifiedGear, IdentifiedHull, IdentifiedShip,
     RandomYawMoment, ValidityRange, WeightedStructure,
@@ -20,7 +20,7 @@ use trial::{Channel, Trial, ZigZag};
 /// Reason for a prediction without track.
 const NO_MOTION: &str = "these records do not determine speed loss and drift, so no track can be predicted";
 
-/// What the records alone say of a ship, whatever model is fitted; computed once for all methods.
+/// Facts of the records of one ship that are independent of the fitted model; computed once for all methods.
 #[derive(Debug, Clone)]
 pub struct RecordFacts<'a> {
     trials: &'a [Trial],
@@ -69,8 +69,8 @@ impl<'a> RecordFacts<'a> {
         // Structures may replay the records better, but give no speed in another manoeuvre.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
-        let informed = fitted.iter().filter(|hull| hull.expected.has_trials);
-        self.checks = informed.filter_map(|hull| Some((hull.expected.form.as_str(), hull.prior_check()?))).collect();
+        let informed = fitted.iter().filter(|hull| hull.prior.has_trials);
+        self.checks = informed.filter_map(|hull| Some((hull.prior.form.as_str(), hull.prior_check()?))).collect();
         let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {
@@ -109,7 +109,7 @@ impl<'a> RecordFacts<'a> {
 
     /// Stored form of a fitted hull with weight 1/`count`, the number of hulls.
     fn stored(&self, hull: &HullEstimate, count: usize) -> IdentifiedHull {
-        let expected = &hull.expected;
+        let expected = &hull.prior;
         let coefficient = |(prior, value): (&HullCoefficient, &f64)| IdentifiedCoefficient {
             key: prior.key.to_owned(),
             symbol: prior.symbol.to_owned(),
@@ -124,9 +124,9 @@ impl<'a> RecordFacts<'a> {
             length_m: length,
             speed_m_s: speed,
             propeller_per_s: propeller,
-            particulars: by_keys(&expected.particulars.unwrap_or_default()),
+            particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
-            covariance: rows_of(&hull.covariance),
+            covariance: matrix_rows(&hull.covariance),
             moment: RandomYawMoment {
                 deviation_rudder_rad: hull.moment.deviation,
                 correlation_s: hull.moment.correlation_time,
@@ -136,7 +136,7 @@ impl<'a> RecordFacts<'a> {
         }
     }
 
-    /// Root mean square of the initial yaw rates of hull replays minus those of the straight approaches, rad/s.
+    /// Root mean square difference of initial yaw rate between hull replays and straight approaches, rad/s.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
         let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
             Some((record.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
@@ -171,7 +171,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 
 /// Identified ship of a first-order estimate; `None` without a covariance.
 ///
-/// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is that of the readings, or
+/// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is the reading noise, or
 /// the rms residual of the replay if the records are not zig-zags.
 pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
@@ -195,7 +195,7 @@ pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identif
 
 /// Identified ship of a trace.
 ///
-/// If no effect is missing but a random moment acts, the first-order member is that of `maximum-likelihood`, whose
+/// If no effect is missing but a random moment acts, the first-order member comes from `maximum-likelihood`, whose
 /// covariance includes the uncertainty of the noise law.
 pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible_structures().iter().map(member).collect();
@@ -245,7 +245,7 @@ fn member(plausible: &PlausibleStructure) -> WeightedStructure {
         effects: response.model().effects().iter().map(stored).collect(),
         parameters: response.parameters().to_vec(),
         fitted: if sound.is_some() { fitted.clone() } else { Vec::new() },
-        covariance: sound.map(rows_of).unwrap_or_default(),
+        covariance: sound.map(matrix_rows).unwrap_or_default(),
         degrees_of_freedom: None,
     }
 }
@@ -265,7 +265,7 @@ const MIN_STEPS: usize = 4;
 /// Rate of the steering gear from the reversals of zig-zags; `None` if no record resolves them.
 ///
 /// The rate is the mean over steps inside movements, with the standard error of that mean. If movements are about as
-/// long as a sampling interval, the error is that of a duration whose ends lie between two rows.
+/// long as a sampling interval, the error follows from a duration whose ends lie between two rows.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> {
     let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
     let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();

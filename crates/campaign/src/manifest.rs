@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{DESIGN, MANIFEST};
+use crate::files::{DESIGN_FILE, MANIFEST_FILE};
 use crate::folder::ResultFolder;
 use crate::scenario::hex;
 use crate::scenario::{Prose, Scenario, identity};
@@ -104,21 +104,21 @@ impl Manifest {
     }
 
     /// Manifest with program and machine of `other`.
-    pub(crate) fn of_program_and_machine(self, other: &Self) -> Self {
+    pub(crate) fn with_program_and_machine(self, other: &Self) -> Self {
         let Self { version, git_revision, git_dirty, crates, machine, .. } = other.clone();
         Self { version, git_revision, git_dirty, crates, machine, ..self }
     }
 
     /// `true` if the study is finished: design, showcases and timings are stored next to its rows.
     pub fn is_finished(&self) -> bool {
-        self.sha256.contains_key(DESIGN)
+        self.sha256.contains_key(DESIGN_FILE)
     }
 
     /// Differences in design and seed, one sentence each; empty if both manifests have the same rows.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.design_sha256 != other.design_sha256 {
-            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::design_of);
+            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::study_design);
             let designs = design(self).zip(design(other));
             let changes = designs.map_or_else(Vec::new, |(there, here)| identity::differences(&there, &here));
             match changes.is_empty() {
@@ -144,7 +144,7 @@ impl Manifest {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
         let text =
             toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
-        folder.write_synced(MANIFEST, REPEAT.to_owned() + &text)
+        folder.write_synced(MANIFEST_FILE, REPEAT.to_owned() + &text)
     }
 
     /// Manifest at a path; `None` without a file.

@@ -20,7 +20,7 @@ use crate::scenario::{Scenario, hex};
 use crate::shard::TrialId;
 
 /// File next to exported records: their scenario and seed.
-pub const TRIALS: &str = "trials.toml";
+pub const TRIALS_FILE: &str = "trials.toml";
 
 /// Contents of `trials.toml`. A scenario can be read from it as from a manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -99,11 +99,12 @@ pub fn read(
     let separator = [b';', b'\t'].into_iter().find(|candidate| head.as_bytes().contains(candidate)).unwrap_or(b',');
     let mut table =
         ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
-    let columns = AnswerColumns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
+    let columns =
+        AnswerColumns::from_header(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
     if !columns.ignored.is_empty() {
         observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
-    let records = Records::of(scenario);
+    let records = Records::from_scenario(scenario);
     let mut lines: HashMap<(Option<String>, TrialNumber), u64> = HashMap::new();
     let mut answers: IndexMap<Option<String>, HashMap<TrialNumber, _>> = IndexMap::new();
     let mut faults = Vec::new();
@@ -147,9 +148,9 @@ pub fn read(
         .collect())
 }
 
-/// Warns of trials without a line of a method; with a stopping rule their number is not known in advance.
+/// Warns of trials without a line of a method; a stopping rule leaves their number open.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_trials_of_cell(cell)).sum();
+    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_cell_trials(cell)).sum();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
         let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
@@ -168,7 +169,7 @@ struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    fn of(scenario: &'a Scenario) -> Self {
+    fn from_scenario(scenario: &'a Scenario) -> Self {
         let name = |cell: usize| record_name(scenario, TrialId { cell, replicate: 0 });
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
@@ -217,7 +218,7 @@ struct AnswerColumns {
 }
 
 impl AnswerColumns {
-    fn of(head: &StringRecord) -> Result<Self, String> {
+    fn from_header(head: &StringRecord) -> Result<Self, String> {
         let mut places = HashMap::new();
         for (place, name) in head.iter().enumerate() {
             // Of several columns with one name the first is used.
@@ -232,8 +233,7 @@ impl AnswerColumns {
             ));
         }
         let is_known = |column: &&str| COLUMNS.split(' ').any(|name| name == *column);
-        let ignored =
-            head.iter().filter(|column| !is_known(column)).take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
+        let ignored = head.iter().filter(|key| !is_known(key)).take(MAX_NAMED_COLUMNS).map(quoted_beginning).collect();
         Ok(Self { places, ignored })
     }
 
@@ -323,7 +323,7 @@ mod tests {
     fn every_record_is_known_by_its_name() {
         for (cells, replicates) in [("", 1), ("", 12), (TWO_CELLS, 1), (TWO_CELLS, 1000)] {
             let scenario = zig_zag(replicates, cells);
-            let records = Records::of(&scenario);
+            let records = Records::from_scenario(&scenario);
             for task in (0..scenario.cells.len())
                 .flat_map(|cell| [0, replicates - 1].map(|replicate| TrialId { cell, replicate }))
             {
@@ -344,12 +344,12 @@ mod tests {
                          0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
         let (read, warnings) = read_from(by_record, &scenario);
         let answers = read.expect("a table of answers");
-        let good = answers.estimate_of((0, 2)).expect("an answer");
+        let good = answers.estimate((0, 2)).expect("an answer");
         assert!(
             (good.response.rudder_bias - from_deg(1.5)).abs() < 1e-15
                 && (good.K().sd.expect("given") - 0.01).abs() < 1e-12
         );
-        let failure = |place| answers.estimate_of(place).expect_err("none").to_string();
+        let failure = |place| answers.estimate(place).expect_err("none").to_string();
         assert_eq!(failure((1, 0)), "outside: K_per_s is missing or not a finite number");
         assert_eq!((failure((1, 1)), failure((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
         assert!(
@@ -357,7 +357,7 @@ mod tests {
             "{warnings}"
         );
         let (read, warnings) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
-        assert_eq!(read.expect("a table").estimate_of((1, 2)).expect("an answer").K().value, 0.1);
+        assert_eq!(read.expect("a table").estimate((1, 2)).expect("an answer").K().value, 0.1);
         assert!(warnings.contains("5 of 6 trials"));
         let named = scenario.with_outside_estimates("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
         let last = MethodName { label: "mine".into(), id: "external".into() };

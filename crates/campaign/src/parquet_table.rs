@@ -39,7 +39,7 @@ pub(crate) fn field(name: &str, physical: Physical, repetition: Repetition, logi
     Arc::new(field.expect("kinds and logical types fit together"))
 }
 
-/// Schema of some columns.
+/// Schema of a table with these columns.
 pub(crate) fn schema(fields: Vec<TypePtr>) -> TypePtr {
     Arc::new(Type::group_type_builder("rows").with_fields(fields).build().expect("a group of columns"))
 }

@@ -35,7 +35,7 @@ pub struct TrialPlan<'a> {
 }
 
 /// Indices of the blocks of a shard.
-pub fn blocks_of(scenario: &Scenario, shard: Shard) -> Range<u64> {
+pub fn shard_blocks(scenario: &Scenario, shard: Shard) -> Range<u64> {
     let of_cell = Block::count_in_cell(scenario.replicates);
     if scenario.stop.is_none() {
         return shard.item_range(Block::count(scenario));
@@ -50,7 +50,7 @@ pub fn max_trials(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let trials = |place| {
             let block = Block::from_index(place, scenario);
-            block.range(scenario.max_trials_of_cell(block.cell)).count() as u64
+            block.range(scenario.max_cell_trials(block.cell)).count() as u64
         };
         return blocks.clone().map(trials).sum();
     }
@@ -72,7 +72,7 @@ impl<'a> TrialPlan<'a> {
             scenario,
             stored,
             read,
-            blocks: blocks_of(scenario, shard),
+            blocks: shard_blocks(scenario, shard),
             cell: 0,
             open: 0..0,
             rule: scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels())),
@@ -113,7 +113,7 @@ impl<'a> TrialPlan<'a> {
             if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
                 continue;
             }
-            let all = block.range(self.scenario.max_trials_of_cell(block.cell));
+            let all = block.range(self.scenario.max_cell_trials(block.cell));
             if all.is_empty() {
                 continue;
             }
@@ -162,7 +162,7 @@ mod tests {
         for (cells, rule) in [(2, ""), (7, ""), (1000, ""), (1000, RULE)] {
             let scenario = swept(cells, 1_000_000_000 / cells, rule);
             let parts: Vec<Range<u64>> =
-                (1..=SHARDS).map(|number| blocks_of(&scenario, Shard { number, of: SHARDS })).collect();
+                (1..=SHARDS).map(|number| shard_blocks(&scenario, Shard { number, count: SHARDS })).collect();
             assert!(parts[0].start == 0 && parts.windows(2).all(|pair| pair[0].end == pair[1].start));
             assert_eq!(parts[parts.len() - 1].end, Block::count(&scenario));
             let trials: u64 = parts.iter().map(|part| max_trials(&scenario, part)).sum();

@@ -1,4 +1,4 @@
-//! Check of predictions: characteristics of manoeuvres predicted from an estimate, and those of the true ship.
+//! Check of predictions: characteristics of manoeuvres, predicted from an estimate and true.
 
 use document::IdentifiedShip;
 use predict::simulated_manoeuvre::SimulatedManoeuvre;

@@ -10,7 +10,7 @@ use trial::Trial;
 use crate::bound;
 use crate::scenario::{Specification, TrialSpecification};
 
-/// Reference against which the estimates of a trial are compared.
+/// Reference for the estimates of a trial: true responses, Cramér–Rao bound and validation manoeuvre.
 #[derive(Default)]
 pub struct TrialReference {
     /// First-order response nearest to the ship; the ship itself if it is first order.

@@ -14,22 +14,22 @@ pub struct TrialId {
     pub replicate: u64,
 }
 
-/// Shard `number` of `of` shards of a study.
+/// Shard of a study: one of `count` equal ranges of its trials.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Number of the shard, from 1.
     pub number: u64,
     /// Number of shards of the study.
-    pub of: u64,
+    pub count: u64,
 }
 
 impl Shard {
     /// Whole study.
-    pub const WHOLE: Self = Self { number: 1, of: 1 };
+    pub const WHOLE: Self = Self { number: 1, count: 1 };
 
-    /// Range of `count` items in this shard: consecutive, with sizes that differ by at most one.
-    pub(crate) fn item_range(self, count: u64) -> Range<u64> {
-        let end = |number: u64| (u128::from(count) * u128::from(number) / u128::from(self.of)) as u64;
+    /// Range of `items` items in this shard: consecutive, with sizes that differ by at most one.
+    pub(crate) fn item_range(self, items: u64) -> Range<u64> {
+        let end = |number: u64| (u128::from(items) * u128::from(number) / u128::from(self.count)) as u64;
         end(self.number - 1)..end(self.number)
     }
 }
@@ -38,9 +38,9 @@ impl FromStr for Shard {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        let parts = text.split_once('/').and_then(|(number, count)| Some((number.parse().ok()?, count.parse().ok()?)));
         match parts {
-            Some((number, of)) if number >= 1 && number <= of => Ok(Self { number, of }),
+            Some((number, count)) if number >= 1 && number <= count => Ok(Self { number, count }),
             _ => Err("expected I/N with I from 1 to N, for instance 3/16".to_owned()),
         }
     }
@@ -48,7 +48,7 @@ impl FromStr for Shard {
 
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.number, self.of)
+        write!(f, "{}/{}", self.number, self.count)
     }
 }
 
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn shards_are_written_as_fractions() {
-        assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
+        assert_eq!("3/16".parse(), Ok(Shard { number: 3, count: 16 }));
         for wrong in ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1/2/3"] {
             assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
         }

@@ -118,7 +118,7 @@ impl SharedTrials<'_> {
             Procedure::StraightOn => Some(Ok(self.fit(FitAnswer::StraightOn, None))),
             Procedure::Identify { .. } => self.response(procedure, &key(&self.tasks[0])),
             // Estimates of outside estimators are looked up by trial.
-            Procedure::Answers(_) => None,
+            Procedure::OutsideEstimates(_) => None,
         };
         let row = |(trial, task): (usize, &TrialId)| {
             let separate = if shared.is_none() { self.response(procedure, &key(task)) } else { None };
@@ -132,8 +132,8 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// Validation record of a trial; `None` if its ship length differs from that of the fitted records, since
-    /// responses of another scale are not replayed.
+    /// Validation record of a trial; `None` if its ship length differs from the fitted records, since responses of
+    /// another scale are not replayed.
     fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
@@ -148,7 +148,7 @@ impl SharedTrials<'_> {
         Some(answer.map(fit).map_err(|error| error.row_text().into_owned()))
     }
 
-    /// Fit with the identified ship for predictions; `settings` are those of a trace.
+    /// Fit with the identified ship for predictions; `settings` are the settings of a trace.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
         let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
@@ -162,15 +162,15 @@ impl SharedTrials<'_> {
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |judge| {
-                    of_base(judge, &PreparedRecord::whole(judge), &estimate.response, ReplayDepth::Windows).ok()
+                    of_base(judge, &PreparedRecord::unaveraged(judge), &estimate.response, ReplayDepth::Windows).ok()
                 };
-                (input.row_of_estimate(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+                (input.estimate_row(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
             }
-            FitAnswer::StraightOn => (input.row_of_straight_course(blank), None),
+            FitAnswer::StraightOn => (input.straight_course_row(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
                 let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
-                (input.row_of_trace(blank, analysis, validation), validation.map(|on| on.errors.clone()))
+                (input.trace_row(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
         let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS_S[1]));

@@ -2,7 +2,7 @@
 //! of all methods, as plot data. It is computed in the run of a study, and plotted from the stored file.
 
 use document::method::MethodEntry;
-use identify::answer::entry;
+use identify::method_entry::method_entry;
 use identify::{Estimate, IdentifierSettings};
 use report::figures::ZigzagTrial;
 use report::{CurveOrigin, PlotCurve};
@@ -52,7 +52,7 @@ pub struct ShowcaseAnswer {
 const POINTS_PER_ROW: usize = 4;
 
 /// Showcase of a cell; `None` if its first trial cannot be simulated.
-pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
+pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = TrialId { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;
@@ -62,7 +62,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answer = |method: &Method| {
         // A trace gives no first-order estimate; it has its own report.
         let answer = method.procedure.identify(&trials, &engine::stream_key(scenario, first))?;
-        Some(entry(&method.label, answer, &trials))
+        Some(method_entry(&method.label, answer, &trials))
     };
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell.methods.iter().filter_map(answer).collect();
     let shown = |(entry, estimate): (MethodEntry, Option<Estimate>)| {
@@ -70,7 +70,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         ShowcaseAnswer { entry, warnings: warnings.collect() }
     };
     let names = scenario.method_names();
-    let fits = FourierCurve::of(cell, &names, trial);
+    let fits = FourierCurve::from_cell(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::from_trial(trial).ok().map(|zigzag| ZigzagTrial {
@@ -132,7 +132,7 @@ struct FourierCurve<'a> {
 
 impl<'a> FourierCurve<'a> {
     /// Fourier curves of the methods of a cell, one per method id, since variants share the curve.
-    fn of(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
+    fn from_cell(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
             let Procedure::Identify { settings: Some(settings), .. } = &method.procedure else { return None };

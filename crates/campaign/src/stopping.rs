@@ -43,7 +43,7 @@ impl StopCheck {
         }
     }
 
-    /// `true` if the standard error is at most that of the rule, for its method or for all methods.
+    /// `true` if the standard error is at most the limit of the rule, for its method or for all methods.
     pub fn is_met(&self) -> bool {
         let met = |sums: &FigureSums| {
             sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error)

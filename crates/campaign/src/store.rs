@@ -1,5 +1,5 @@
 //! Primary files of a result folder: rows, design, showcases, timings and manifest. The manifest contains the SHA-256
-//! of the files written on completion; each block of rows contains its own.
+//! of the files written on completion; each block of rows contains its hash.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::block_store::{self, BlockStore};
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
-use crate::files::{DESIGN, LEGACY_ROWS, MANIFEST, SHOWCASES, TIMINGS};
+use crate::files::{DESIGN_FILE, LEGACY_ROWS_FILE, MANIFEST_FILE, SHOWCASES_FILE, TIMINGS_FILE};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::rows::StudyRow;
@@ -42,11 +42,11 @@ impl StoredStudy {
         if !manifest.is_finished() {
             return Err(Failure::in_file(folder, "the study in it is not finished; run it again to go on"));
         }
-        Self::of(folder, manifest)
+        Self::from_manifest(folder, manifest)
     }
 
     /// Files listed by a manifest, verified by their SHA-256.
-    pub(crate) fn of(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
+    pub(crate) fn from_manifest(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
         let text = |name: &str| {
             let path = folder.join(name);
             let bytes = disk::read(&path, MAX_TEXT_BYTES).on("read", &path)?;
@@ -59,11 +59,11 @@ impl StoredStudy {
                 Some(_) => Err(refused(&path, "it was changed: its SHA-256 is not the one in the manifest")),
             }
         };
-        let (bytes, refuse) = text(DESIGN)?;
+        let (bytes, refuse) = text(DESIGN_FILE)?;
         let design = Design::from_json(&bytes).map_err(refuse)?;
-        let (bytes, refuse) = text(SHOWCASES)?;
+        let (bytes, refuse) = text(SHOWCASES_FILE)?;
         let showcases = serde_json::from_slice(&bytes).map_err(|problem| refuse(problem.to_string()))?;
-        let (bytes, refuse) = text(TIMINGS)?;
+        let (bytes, refuse) = text(TIMINGS_FILE)?;
         let timings = Timings::from_csv(&bytes, &design).map_err(refuse)?;
         let design = Design { prose: manifest.prose(), ..design };
         Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings })
@@ -77,7 +77,7 @@ impl StoredStudy {
         folder: &ResultFolder,
     ) -> Result<Self, Failure> {
         let mut sha256 = self.manifest.sha256.clone();
-        write(DESIGN, &described(DESIGN, &design, folder)?, folder, &mut sha256)?;
+        write(DESIGN_FILE, &described(DESIGN_FILE, &design, folder)?, folder, &mut sha256)?;
         let manifest = Manifest { sha256, ..manifest };
         if manifest != self.manifest {
             manifest.write(folder)?;
@@ -106,7 +106,7 @@ fn refused(path: &Path, problem: &str) -> Failure {
 ///
 /// Fails for rows in the single file of earlier versions.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
-    let old = folder.join(LEGACY_ROWS);
+    let old = folder.join(LEGACY_ROWS_FILE);
     if disk::is_there(&old).on("look for", &old)? {
         return Err(Failure::in_file(
             &old,
@@ -114,7 +114,7 @@ pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
              and run the study again",
         ));
     }
-    if block_store::has_blocks(folder)? { Manifest::read(&folder.join(MANIFEST)) } else { Ok(None) }
+    if block_store::has_blocks(folder)? { Manifest::read(&folder.join(MANIFEST_FILE)) } else { Ok(None) }
 }
 
 /// Manifest of a folder that must contain rows.
@@ -156,15 +156,15 @@ pub(crate) fn finish(
     timings: &Timings,
 ) -> Result<StoredStudy, Failure> {
     let mut sha256 = BTreeMap::new();
-    write(DESIGN, &described(DESIGN, &design, folder)?, folder, &mut sha256)?;
-    write(SHOWCASES, &described(SHOWCASES, &showcases, folder)?, folder, &mut sha256)?;
+    write(DESIGN_FILE, &described(DESIGN_FILE, &design, folder)?, folder, &mut sha256)?;
+    write(SHOWCASES_FILE, &described(SHOWCASES_FILE, &showcases, folder)?, folder, &mut sha256)?;
     let times = timings.to_csv(&design)?;
-    write(TIMINGS, &times, folder, &mut sha256)?;
+    write(TIMINGS_FILE, &times, folder, &mut sha256)?;
     let manifest = Manifest { sha256, ..manifest };
     // Written last, since it makes the folder a finished study.
     manifest.write(folder)?;
     // Timings as written, rounded to the nanosecond.
-    let timings = Timings::from_csv(&times, &design).map_err(Failure::work)?;
+    let timings = Timings::from_csv(&times, &design).map_err(Failure::execution)?;
     let design = Design { prose: manifest.prose(), ..design };
     Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings })
 }

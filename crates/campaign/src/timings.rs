@@ -89,7 +89,7 @@ impl Timings {
 
     /// Text of `timings.csv`.
     pub fn to_csv(&self, design: &Design) -> Result<Vec<u8>, Failure> {
-        let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to write timings: {error}"));
+        let refuse = |error: &dyn std::fmt::Display| Failure::execution(format!("failed to write timings: {error}"));
         let mut file = csv::Writer::from_writer(Vec::new());
         self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
         file.into_inner().map_err(|error| refuse(&error))

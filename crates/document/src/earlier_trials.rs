@@ -71,7 +71,7 @@ pub enum Likeness {
 impl Likeness {
     /// Likeness of the ship of earlier trials to another ship.
     pub fn from_particulars(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
-        match (ship.differing_keys(earlier).is_empty(), ship.has_length_of(earlier)) {
+        match (ship.differing_keys(earlier).is_empty(), ship.has_equal_length(earlier)) {
             (false, _) => Self::OtherHull,
             (true, true) => Self::SameShip,
             (true, false) => Self::OtherScale,

@@ -14,14 +14,14 @@ pub enum IdentifiedShipError {
         form: String,
     },
     /// Lists of different lengths.
-    #[error("{what}: expected {expected}, found {found}; fit or trace the record again with this program")]
+    #[error("{list}: expected {expected}, found {length}; fit or trace the record again with this program")]
     Count {
         /// Name of the list.
-        what: &'static str,
+        list: &'static str,
         /// Expected number.
         expected: usize,
         /// Number in the file.
-        found: usize,
+        length: usize,
     },
     /// Parameter that is not finite, or length, speed or weight out of range.
     #[error("{key} = {value}: expected a finite number (a weight of at least 0, a length or speed of a ship)")]

@@ -209,7 +209,7 @@ impl FitDocument {
     }
 
     /// Warnings on the recommended estimate, the most severe first.
-    pub fn answer_warnings(&self) -> impl Iterator<Item = &Warning> {
+    pub fn verdict_warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|warning| !self.is_note(warning))
     }
 
@@ -226,7 +226,7 @@ impl FitDocument {
 
 impl VerdictEntry {
     /// `true` if additional terms of a hull reduce the residual of output error to less than two thirds.
-    pub fn falls_with_ship_terms(&self) -> bool {
+    pub fn improves_with_ship_terms(&self) -> bool {
         self.residual_deg.zip(self.with_ship_terms_deg).is_none_or(|(before, after)| after < before * 2.0 / 3.0)
     }
 }

@@ -85,12 +85,12 @@ pub struct TrialHull {
 }
 
 /// Particulars of a hull by their keys; missing ones are omitted.
-pub fn by_keys(particulars: &HullParticulars) -> BTreeMap<String, f64> {
+pub fn keyed_particulars(particulars: &HullParticulars) -> BTreeMap<String, f64> {
     PARTICULARS.iter().filter_map(|item| Some((item.key.to_owned(), item.get(particulars)?))).collect()
 }
 
 /// Rows of a matrix.
-pub fn rows_of(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+pub fn matrix_rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
     matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
@@ -170,13 +170,13 @@ impl IdentifiedHull {
         };
         Self {
             propeller_per_s: None,
-            particulars: by_keys(ship),
+            particulars: keyed_particulars(ship),
             coefficients: expected.iter().enumerate().map(coefficient).collect(),
-            covariance: rows_of(&(common + &covariance)),
+            covariance: matrix_rows(&(common + &covariance)),
             trial_hull: Some(TrialHull {
                 hull: Box::new(self.clone()),
                 gain,
-                conditional_covariance: rows_of(&covariance),
+                conditional_covariance: matrix_rows(&covariance),
             }),
             ..self.scaled_to(self.length_m, ship.speed)
         }

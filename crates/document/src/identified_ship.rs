@@ -91,9 +91,9 @@ impl WeightedStructure {
                 .ok_or_else(|| IdentifiedShipError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
         let model = ResponseModel::new(self.effects.iter().map(effect).collect::<Result<_, _>>()?);
-        let (expected, found) = (model.parameter_count(), self.parameters.len());
-        if expected != found {
-            return Err(IdentifiedShipError::Count { what: "parameters", expected, found });
+        let (expected, length) = (model.parameter_count(), self.parameters.len());
+        if expected != length {
+            return Err(IdentifiedShipError::Count { list: "parameters", expected, length });
         }
         for (parameter, value) in model.parameters().zip(&self.parameters) {
             if !value.is_finite() {
@@ -101,7 +101,7 @@ impl WeightedStructure {
             }
         }
         let count = self.fitted.len();
-        let wrong = |what, expected, found| Err(IdentifiedShipError::Count { what, expected, found });
+        let wrong = |list, expected, length| Err(IdentifiedShipError::Count { list, expected, length });
         if !self.covariance.is_empty() && self.covariance.len() != count {
             return wrong("rows of the covariance", count, self.covariance.len());
         }
@@ -214,7 +214,7 @@ impl IdentifiedShip {
 
     /// Delay of the logged rudder, s: a negative dead time of the most probable structure; `None` if
     /// positive.
-    pub fn rudder_logged_late(&self) -> Option<f64> {
+    pub fn logged_rudder_delay(&self) -> Option<f64> {
         let likeliest = self.members.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
         let places = likeliest.dead_times(&likeliest.model().ok()?);
         let late = -places.iter().map(|place| likeliest.parameters[*place]).sum::<f64>();

@@ -13,6 +13,7 @@
 //! | warnings | [`warning`] |
 //! | machine-readable error codes | [`ErrorCode`] |
 
+mod display;
 pub mod earlier_trials;
 pub mod error;
 mod error_code;
@@ -25,7 +26,6 @@ pub mod names;
 pub mod noise;
 mod quantity;
 pub mod scales;
-mod shown;
 pub mod single_records;
 pub mod trace;
 mod trial_particulars;

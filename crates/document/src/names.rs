@@ -67,8 +67,8 @@ pub fn record(stem: &str) -> String {
 
 /// Display name and unit of a figure of merit from the unit suffix of its identifier; an empty unit without one.
 pub fn figure_of_merit(id: &str) -> (String, &'static str) {
-    let known = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
-    let (stem, unit) = known.unwrap_or((id, ""));
+    let suffixed = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
+    let (stem, unit) = suffixed.unwrap_or((id, ""));
     (with_blanks(stem), unit)
 }
 

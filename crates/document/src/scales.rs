@@ -16,7 +16,7 @@ pub enum Scaling {
     DoesNotScale,
     /// Undecided: the errors are too large or unknown.
     #[serde(rename = "cannot be told")]
-    CannotBeTold,
+    Undecided,
 }
 
 /// Dimensionless term at every scale.

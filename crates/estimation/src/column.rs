@@ -63,12 +63,11 @@ impl<const N: usize> Kernel for Gram<'_, N> {
 pub struct ColumnProjection {
     /// Mean.
     pub mean: f64,
-    /// Product with the unit column.
+    /// Component along the unit column.
     pub share: f64,
 }
 
-/// Projection of a column, which is removed in place, on the constant and on `unit` (unit length, zero mean, as many
-/// rows).
+/// Projection of a column, removed in place, on the constant and on `unit` (unit length, zero mean, as many rows).
 pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
     run(Project { unit, column })
 }

@@ -47,8 +47,7 @@ fn bandwidth(scores: &[Vec<f64>]) -> usize {
     scores.iter().map(column_length).max().unwrap_or(1).min(max_length)
 }
 
-/// Moving sums of a column over windows of `length` rows, including windows that overlap an end; empty for an empty
-/// column.
+/// Moving sums of a column over windows of `length` rows, also windows that overlap an end; empty for no rows.
 fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(column.len() + length);
     let mut window = 0.0;

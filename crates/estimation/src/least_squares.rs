@@ -9,12 +9,12 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LeastSquaresError {
     /// Fewer rows than columns.
-    #[error("needs at least {needed} equations, found {found}")]
+    #[error("needs at least {columns} equations, found {rows}")]
     TooFewRows {
         /// Number of columns.
-        needed: usize,
+        columns: usize,
         /// Number of rows.
-        found: usize,
+        rows: usize,
     },
     /// Parallel columns, or a column that is zero or not finite.
     #[error("the equations are singular (condition number {condition:.1e}, limit {limit:.0e})")]
@@ -49,7 +49,7 @@ impl LeastSquares {
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, LeastSquaresError> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {
-            return Err(LeastSquaresError::TooFewRows { needed: width, found: rows });
+            return Err(LeastSquaresError::TooFewRows { columns: width, rows });
         }
         let singular = |condition| LeastSquaresError::Singular { condition, limit: condition_limit };
         let norm = |column: &&[f64]| column.iter().map(|x| x * x).sum::<f64>().sqrt();

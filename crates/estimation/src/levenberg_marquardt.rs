@@ -35,7 +35,7 @@ pub struct NormalEquations {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// Maximum number of accepted steps.
-    pub steps: usize,
+    pub max_steps: usize,
     /// Initial damping λ, relative to the second derivatives.
     pub damping: f64,
     /// Factor on the damping after a step whose decrease of J is at least `trust_ratio` times the predicted decrease.
@@ -162,7 +162,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
     let (mut damping, mut small_steps) = (rules.damping, 0);
     let mut end = if value.is_finite() { SearchEnd::StepLimit } else { SearchEnd::NotFinite };
     let mut steps = 0;
-    'search: while steps < rules.steps && end == SearchEnd::StepLimit {
+    'search: while steps < rules.max_steps && end == SearchEnd::StepLimit {
         work.prepare(problem, &at, &normal);
         let mut tries = 0;
         let lower = loop {
@@ -210,7 +210,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     const RULES: SearchSettings = SearchSettings {
-        steps: 50,
+        max_steps: 50,
         damping: 1e-3,
         shrink: 0.2,
         trust_ratio: 0.0,
@@ -259,7 +259,7 @@ mod tests {
     fn a_search_says_why_it_ended() {
         let start = DVector::from_vec(vec![-1.2, 1.0]);
         assert_eq!(
-            minimise(&mut Valley { max_x: 5.0 }, start.clone(), &SearchSettings { steps: 3, ..RULES }).end,
+            minimise(&mut Valley { max_x: 5.0 }, start.clone(), &SearchSettings { max_steps: 3, ..RULES }).end,
             SearchEnd::StepLimit
         );
         let eager = SearchSettings { min_decrease: 1e9, ..RULES };

@@ -126,7 +126,7 @@ mod tests {
         assert!(low < -0.1 && high > 1.1 && (mean - 0.5).abs() < 1e-12);
     }
 
-    /// Interval of a ratio: far from zero that of the delta method, near zero none.
+    /// Interval of a ratio by the delta method; none near zero.
     #[test]
     fn a_ratio_has_an_interval_away_from_zero() {
         let pair = |a: f64| NormalPair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };

@@ -26,7 +26,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
-use points::{BaseCourseOrigin, Points};
+use points::{BaseCourseOrigin, TrialPoints};
 use points_fit::AnalysedTrial;
 
 /// Selection and use of the characteristic points.
@@ -132,9 +132,9 @@ impl Identifier for CharacteristicPoints {
         let analysed: Vec<AnalysedTrial> = Samples::from_trials(trials, Trial::MIN_ROWS)?
             .into_iter()
             .map(|samples| {
-                let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
+                let mut points = TrialPoints::find(&samples, base, self.settings.half_width_s, self.width_share());
                 if !self.settings.start_at_rest {
-                    points.drop_rest();
+                    points.remove_start_at_rest();
                 }
                 AnalysedTrial { samples, points }
             })
@@ -163,7 +163,7 @@ impl Identifier for CharacteristicPoints {
             Err(reason) => Uncertainty::None { reason },
         };
         let mut diagnostics = fit.diagnostics;
-        let count = |number: fn(&Points) -> usize| analysed.iter().map(|trial| number(&trial.points) as f64).sum();
+        let count = |number: fn(&TrialPoints) -> usize| analysed.iter().map(|trial| number(&trial.points) as f64).sum();
         diagnostics.push(("instants_without_yaw_rate", count(|points| points.zero_rate_points.len())));
         diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
         diagnostics.push(("half_width_s", analysed[0].points.half_width));
@@ -188,7 +188,7 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 
 fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
     let base_course_warning = |(trial, analysed): (&Trial, &AnalysedTrial)| {
-        let assumed = match analysed.points.base_from {
+        let assumed = match analysed.points.base_origin {
             BaseCourseOrigin::Given | BaseCourseOrigin::Approach => return None,
             BaseCourseOrigin::Zero => "heading 0",
             BaseCourseOrigin::Middle => "the middle of its headings",

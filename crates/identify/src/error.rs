@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use estimation::least_squares::LeastSquaresError;
 use thiserror::Error;
 
-/// Failed identification; it is a row of a study like any other result.
+/// Reason why a method gives no estimate; in a study the failure is a row like any estimate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum IdentifyError {
     /// No trial was given.
@@ -48,10 +48,10 @@ pub enum IdentifyError {
         count: usize,
     },
     /// Fewer points of a kind than the method requires.
-    #[error("needs at least {needed} {what}, found {count}")]
+    #[error("needs at least {needed} {kind}, found {count}")]
     TooFewPoints {
         /// Kind of the points, e.g. "heading extrema".
-        what: &'static str,
+        kind: &'static str,
         /// Number of points required.
         needed: usize,
         /// Number of points in the records.
@@ -92,7 +92,7 @@ pub enum IdentifyError {
         /// Standard deviation of K/T, 1/s².
         sd: f64,
     },
-    /// The estimate is not that of a ship: K/T ≤ 0 or not finite.
+    /// Estimate that is no ship: K/T ≤ 0 or not finite.
     #[error(
         "the estimate is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
          units of rudder and heading, or give a zig-zag: a rudder that is put over once does not separate K and T"
@@ -111,8 +111,8 @@ pub enum IdentifyError {
 impl From<LeastSquaresError> for IdentifyError {
     fn from(unsolvable: LeastSquaresError) -> Self {
         match unsolvable {
-            LeastSquaresError::TooFewRows { needed, found } => {
-                Self::TooFewPoints { what: "equations", needed, count: found }
+            LeastSquaresError::TooFewRows { columns, rows } => {
+                Self::TooFewPoints { kind: "equations", needed: columns, count: rows }
             }
             LeastSquaresError::Singular { condition, limit } => Self::Singular { condition, limit },
         }

@@ -45,7 +45,7 @@ impl StopReason {
 pub struct Covariance {
     /// Covariance matrix, 3 × 3.
     pub matrix: Matrix3<f64>,
-    /// Degrees of freedom of the noise variance; `None` if the variance was known.
+    /// Degrees of freedom of the noise variance; `None` for a given variance.
     pub degrees_of_freedom: Option<f64>,
 }
 
@@ -72,7 +72,10 @@ pub enum Uncertainty {
     },
 }
 
-/// Estimate of one identification.
+/// Estimate of the first-order response T r' + r = K (δ + δ_r) from one or several trials of a ship, with uncertainty.
+///
+/// Parameters: 1/T (1/s), K/T (1/s²), δ_r (rad). [`K`](Self::K) and [`T`](Self::T) are infinite for a neutrally stable
+/// ship and negative for a course-unstable ship.
 ///
 /// ```
 /// use kempf_identify::{Identifier, output_error};
@@ -95,17 +98,17 @@ pub enum Uncertainty {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// First-order response.
+    /// Estimated 1/T, K/T and δ_r.
     pub response: FirstOrder,
     /// Uncertainty of the response, valid if the residual is white.
     pub uncertainty: Uncertainty,
-    /// Covariance that is also valid for a coloured residual, if the method gives it.
+    /// Covariance valid for a coloured residual as well (Newey and West 1987); `None` if the method has none.
     pub robust: Option<Covariance>,
     /// Reason why the method stopped.
     pub stop: StopReason,
     /// Number of model evaluations (simulations or solved systems).
     pub evaluations: usize,
-    /// Noise of the first record, if the method estimates a random moment.
+    /// Heading noise of the first record; `None` if the method estimates no random moment.
     pub noise: Option<HeadingNoise>,
     /// Named diagnostics: fit R², condition numbers, counts; the unit is in the name.
     pub diagnostics: Vec<(&'static str, f64)>,
@@ -119,7 +122,7 @@ impl Estimate {
         self.diagnostics.iter().find(|(label, _)| *label == name).map(|(_, value)| *value)
     }
 
-    /// Estimate of K with its error, 1/s.
+    /// Turning ability index K, 1/s, with standard deviation and 95 % interval.
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
@@ -128,7 +131,7 @@ impl Estimate {
         }
     }
 
-    /// Estimate of T with its error, s.
+    /// Time constant T, s, with standard deviation and 95 % interval.
     pub fn T(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
@@ -137,7 +140,7 @@ impl Estimate {
         }
     }
 
-    /// Estimate of δ_r with its error, rad.
+    /// Rudder bias δ_r, rad, with standard deviation and 95 % interval.
     pub fn rudder_bias(&self) -> Quantity {
         let value = self.response.rudder_bias;
         match &self.uncertainty {

@@ -10,7 +10,7 @@
 //!
 //! Neighbouring rows of a record of more than 50 000 rows are averaged, rudder and heading alike: the equation is
 //! linear, so the averages satisfy it, and the shortest possible harmonic still has some 800 rows. The noise is then
-//! that of the means.
+//! the noise of the means.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
@@ -200,8 +200,8 @@ impl FourierProjected {
         let zigzag = TAU / zero_crossing_period(time, heading)?;
         let needed = (reach.min(MIN_REACH) * zigzag / choice.fundamental).ceil() as usize;
         if needed > MAX_HARMONICS {
-            let what = "harmonics to follow the many zig-zags of this record (give shorter records)";
-            return Err(IdentifyError::TooFewPoints { what, needed, count: MAX_HARMONICS });
+            let kind = "harmonics to follow the many zig-zags of this record (give shorter records)";
+            return Err(IdentifyError::TooFewPoints { kind, needed, count: MAX_HARMONICS });
         }
         // The series must at least reach the zig-zag frequency, with fewer coefficients than half the rows.
         let lowest = ((zigzag / choice.fundamental).ceil() as usize).max(1);

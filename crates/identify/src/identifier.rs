@@ -39,15 +39,15 @@ pub trait Identifier: Send + Sync {
     /// Summary of the method in one line, for lists.
     fn summary(&self) -> &'static str;
 
-    /// Identifies K, T and δ_r, common to all trials; every trial keeps its own initial state.
+    /// Identifies K, T and δ_r, common to all trials; every trial has a separate initial state.
     ///
     /// Fails with a typed reason if a record does not excite the ship, is too short for the method, or the equations
     /// are singular; never panics on a valid [`Trial`].
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError>;
 
-    /// Method with another seed, for methods with random samples; `None` for all others.
+    /// Method with another seed, for methods with random samples; `None` for deterministic methods.
     ///
-    /// A benchmark gives every trial its own seed, so that the spread over trials includes the randomness of the
+    /// A benchmark gives every trial another seed, so that the spread over trials includes the randomness of the
     /// method.
     fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
         None

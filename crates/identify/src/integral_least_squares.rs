@@ -3,7 +3,7 @@
 //! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state enters through c₀ and c₁,
 //! which differ between the stretches between gaps; a, b and b δ_r are common to all stretches of all trials. The
 //! method is nearly as precise as output error for white heading noise; it does not model a yaw disturbance. The
-//! iteration that removes the remaining loss is that of the output-error and instrumental-variable methods. Source of
+//! iteration that removes the remaining loss belongs to the output-error and instrumental-variable methods. Source of
 //! the integral-equation approach: Unbehauen and Rao (1987), Identification of Continuous Systems.
 
 mod equations;
@@ -22,7 +22,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
-use crate::robust::{newey_west_of_three, reported_covariance};
+use crate::robust::{newey_west_three, reported_covariance};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use equations::{IntegratedStretch, SHARED_PARAMETERS, Solution};
@@ -90,19 +90,19 @@ impl Identifier for IntegralLeastSquares {
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let samples = Samples::from_trials(trials, Trial::MIN_ROWS)?;
         let mut pieces = self.stretches(&samples)?;
-        let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
+        let solution = Solution::from_stretches(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
         if b.is_nan() || b <= 0.0 {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
-        let noise = ResidualNoise::of(&pieces, &solution);
+        let noise = ResidualNoise::from_stretches(&pieces, &solution);
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
         let covariance =
             |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
-        let robust = noise.variance.map(|_| covariance(newey_west_of_three(&noise.scores) * noise.finite_sample));
+        let robust = noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.finite_sample));
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust) {
             (Some(variance), Some(robust)) => {
@@ -145,7 +145,7 @@ impl IntegralLeastSquares {
         // Initial states, the shared parameters, and as many degrees of freedom for their error.
         let needed = 2 * SHARED_PARAMETERS + 2 * all.len().max(1);
         if count < needed {
-            return Err(IdentifyError::TooFewPoints { what: "headings in stretches without a gap", needed, count });
+            return Err(IdentifyError::TooFewPoints { kind: "headings in stretches without a gap", needed, count });
         }
         Ok(all)
     }

@@ -16,7 +16,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
-use crate::robust::newey_west_of_three;
+use crate::robust::newey_west_three;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
@@ -163,7 +163,7 @@ impl Identifier for MotionRegression {
         let robust = solution.variance().map(|_| {
             let finite_sample = acceleration.len() as f64 / solution.degrees_of_freedom;
             Covariance {
-                matrix: base(newey_west_of_three(&equations.scores([a, b, c])) * finite_sample),
+                matrix: base(newey_west_three(&equations.scores([a, b, c])) * finite_sample),
                 degrees_of_freedom: Some(solution.degrees_of_freedom),
             }
         });
@@ -230,7 +230,7 @@ impl MotionRegression {
         }
         let count = equations.acceleration.len();
         if count < MIN_EQUATIONS {
-            return Err(IdentifyError::TooFewPoints { what: "windows without a gap", needed: MIN_EQUATIONS, count });
+            return Err(IdentifyError::TooFewPoints { kind: "windows without a gap", needed: MIN_EQUATIONS, count });
         }
         Ok(equations)
     }

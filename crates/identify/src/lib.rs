@@ -18,7 +18,6 @@
 //!
 //! Of several estimates [`verdict`] selects the recommended one, or rejects all.
 
-pub mod answer;
 pub mod characteristic_points;
 pub mod error;
 pub mod estimate;
@@ -33,8 +32,9 @@ pub mod lack_of_fit;
 pub mod least_squares;
 pub mod likelihood;
 pub mod maximum_likelihood;
+pub mod method_entry;
 pub mod output_error;
-mod outside_answer;
+mod outside_fit;
 pub mod plausibility;
 mod profile;
 pub mod recommended;
@@ -53,5 +53,5 @@ pub mod verdict;
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
 pub use identifier::Identifier;
-pub use outside_answer::{OutsideErrors, OutsideFit};
+pub use outside_fit::{OutsideErrors, OutsideFit};
 pub use registry::IdentifierSettings;

@@ -4,7 +4,7 @@
 //! first order in time, and the recorded rudder may have a white error; the law is selected by BIC. Given 1/T and the
 //! noise the heading is linear in all other unknowns, so the search is over these few numbers alone, by Fisher scoring
 //! with exact slopes. It starts at the estimate of `output-error`, which is global in both signs of 1/T, and repeats
-//! the search over 1/T under the selected noise. With compass noise alone, the estimate is that of `output-error`.
+//! the search over 1/T under the selected noise. With compass noise alone it equals `output-error`.
 //!
 //! Spikes of the compass are left out, jumps of level are estimated, and both are listed.
 //!
@@ -55,7 +55,7 @@ pub struct MaximumLikelihood {
 }
 
 impl MaximumLikelihood {
-    /// Most plausible noise laws of some records, with the fit under each.
+    /// Most plausible noise laws of the records, with the fit under each law.
     fn choose_law(&self, trials: &[Trial]) -> Result<choice::ChosenLaw, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
@@ -63,7 +63,7 @@ impl MaximumLikelihood {
         choice::PreparedRecords::new(&self.settings, trials)?.choose(&self.settings)
     }
 
-    /// Maximum log-likelihood of some records; `None` if the method gives no estimate.
+    /// Maximum log-likelihood of the records; `None` if the method gives no estimate.
     pub fn log_likelihood(&self, trials: &[Trial]) -> Option<f64> {
         let chosen = self.choose_law(trials).ok()?;
         let log_likelihood = -0.5 * chosen.maxima[0].1.point.deviance;

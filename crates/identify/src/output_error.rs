@@ -1,7 +1,7 @@
 //! Method `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
 //! The unknowns are 1/T, b = K/T and b δ_r, common to all trials, and heading and yaw rate at one end of every trial.
-//! For a given 1/T the heading is linear in the others, so only 1/T is searched. The profiled sum of squares is scanned
+//! For a given 1/T the heading is linear in the others; 1/T alone is searched. The profiled sum of squares is scanned
 //! over both signs of 1/T. Every local minimum is refined by variable projection with exact sensitivities (Golub and
 //! Pereyra 1973; Kaufman 1975), first on a part of the rows; unless it is far above the lowest, then on all rows. The
 //! lowest minimum is the estimate. It is the global one unless that is narrower than the scan. Source of the method:
@@ -111,7 +111,7 @@ const MAX_HALVINGS: usize = 12;
 const SHARED_PARAMETERS: usize = 3;
 
 /// Maximum condition number of the scaled Jacobian: above it the record does not separate 1/T, K/T and δ_r.
-pub(crate) const CONDITION_LIMIT: f64 = 1e6;
+pub(crate) const MAX_CONDITION: f64 = 1e6;
 
 /// Minimum number of headings of a trial.
 pub(crate) const MIN_ROWS: usize = 12;
@@ -252,7 +252,7 @@ struct RangeScan {
 
 impl RangeScan {
     /// Local minima in 1/T of a ship that turns to the side of the rudder, the deepest first, because it sets the
-    /// maximum for the others.
+    /// maximum for later minima.
     fn valleys(&self) -> Vec<f64> {
         let height = |k: usize| {
             let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
@@ -275,7 +275,7 @@ impl RangeScan {
             Some((inverse_time, FitAtTime { gain, .. })) if gain <= 0.0 => {
                 IdentifyError::NotAShip { inverse_time, gain }
             }
-            _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
+            _ => IdentifyError::Singular { condition, limit: MAX_CONDITION },
         }
     }
 
@@ -296,8 +296,7 @@ impl RangeScan {
         let observations = profile.observations();
         let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trials()) as f64;
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
-        let (inverse, condition) =
-            invert(&information, CONDITION_LIMIT).map_err(|condition| self.refusal(condition))?;
+        let (inverse, condition) = invert(&information, MAX_CONDITION).map_err(|condition| self.refusal(condition))?;
         let white = response_covariance(&(inverse * (rss / freedom)), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < MIN_GAIN_DEVIATIONS * gain_sd {
@@ -306,11 +305,11 @@ impl RangeScan {
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());
         // The factor corrects for the degrees of freedom of the fit, as in the variance above.
-        let long_run = robust::newey_west_of_three(&profile.into_scores()) * (observations as f64 / freedom);
+        let long_run = robust::newey_west_three(&profile.into_scores()) * (observations as f64 / freedom);
         let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
         let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
-        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
+        warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(UNSTABLE_WARNING)));
         if at_bound {
             let (time, end) = (ShortNumber(response.T()), ShortNumber(1.0 / fastest));
             let text = format!("T = {time} s lies at or beyond the limit of the search, ±{end} s");
@@ -337,7 +336,7 @@ impl RangeScan {
 }
 
 /// Warning text for a negative 1/T.
-pub(crate) const COURSE_UNSTABLE: &str = "course-unstable: 1/T is negative, K and T are negative";
+pub(crate) const UNSTABLE_WARNING: &str = "course-unstable: 1/T is negative, K and T are negative";
 
 /// Covariance of (1/T, K/T, δ_r) from the covariance of (1/T, b, b δ_r).
 pub(crate) fn response_covariance(linear_covariance: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {

@@ -7,9 +7,9 @@
 //! recommended as well: output error attributes the effect of gusts to the rudder. Records that declare a calm have no
 //! such moment. If terms of a ship explain the residual, the model lacks a term. A random moment then substitutes for
 //! it, and K, T of maximum likelihood describe small and fast motions. An estimate of maximum likelihood without an
-//! interval of K is never recommended: its random moment explains the manoeuvre. Its replay may be worse than that of
-//! output error, as that of the true ship is under strong random moments, by a factor of at most 30. The rule is this
-//! project's own; METHODOLOGY documents its limits.
+//! interval of K is never recommended: its random moment explains the manoeuvre. Its replay error may exceed the error
+//! of output error, as for the true ship under strong random moments, by a factor of at most 30. The rule was made for
+//! this project; METHODOLOGY documents its limits.
 //!
 //! As a method it fits both models and returns the recommended estimate, so that a study can test the rule.
 
@@ -30,7 +30,7 @@ use crate::{maximum_likelihood, output_error};
 /// shows the loss by the rule; METHODOLOGY documents the limit.
 const MIN_RANDOM: f64 = 0.33;
 
-/// Maximum replay error of maximum likelihood, relative to that of output error, of a ship in a random moment: above it
+/// Maximum replay error of maximum likelihood, relative to output error, of a ship in a random moment: above it
 /// the moment would have to cancel the steering. In gusts the ratio is at most about five.
 const MAX_REPLAY_RATIO: f64 = 30.0;
 
@@ -54,8 +54,7 @@ impl Recommendation {
     ) -> Self {
         let lack = output_error.and_then(|estimate| LackOfFit::from_response(trials, &estimate.response));
         let is_calm = trials.iter().all(Trial::is_calm);
-        let is_random =
-            !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|share| share >= MIN_RANDOM);
+        let is_random = !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|x| x >= MIN_RANDOM);
         let has_moment = |fit: &Estimate| fit.noise.is_some_and(|noise| !noise.moment.is_none());
         let rms = |fit: &Estimate| pooled_response_rms(trials, &fit.response).unwrap_or(f64::INFINITY);
         let is_far = |fit: &Estimate| output_error.is_some_and(|nearest| rms(fit) > MAX_REPLAY_RATIO * rms(nearest));

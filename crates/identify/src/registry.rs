@@ -1,7 +1,7 @@
 //! Registry of the methods by name, with their settings as written in scenario files.
 //!
 //! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below.
-//! The contract test of all methods then runs it. A method that combines others is listed after them.
+//! The contract test of all methods then runs it. A method that combines other methods is listed last.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,14 +34,14 @@ macro_rules! methods {
             }
         }
 
-        /// All methods that do not combine others, with default settings, in the order of reports.
+        /// All methods that do not combine other methods, with default settings, in the order of reports.
         pub fn default_settings() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }
     };
 }
 
-// The key in a scenario is the name in kebab-case; in brackets is the file. The order is that of reports.
+// The key in a scenario is the name in kebab-case; in brackets is the file. Order as in reports.
 methods! {
     FourierPublished(fourier_published),
     FourierProjected(fourier_projected),
@@ -54,7 +54,7 @@ methods! {
     combined: Recommended(recommended),
 }
 
-/// Ids of the methods of a usual fit, the best first. Without `srivc`, whose estimate is that of `output-error`, and
+/// Ids of the methods of a usual fit, the best first. Without `srivc`, whose estimate equals `output-error`, and
 /// `fourier-published`, whose T is biased even without noise.
 pub const DEFAULT_METHODS: [&str; 6] = [
     "output-error",
@@ -98,7 +98,7 @@ mod tests {
             let default = characteristic_points::Settings::default();
             Method::CharacteristicPoints(characteristic_points::Settings { half_width_s, condition_limit, ..default })
         };
-        for (settings, key, found) in [
+        for (settings, key, value) in [
             (triples(usize::MAX), "triples", "18446744073709551615"),
             (triples(10_001), "triples", "10001"),
             (triples(0), "triples", "0"),
@@ -120,7 +120,7 @@ mod tests {
             (Method::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
         ] {
             let error = settings.build().err().expect("it cannot end");
-            assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");
+            assert_eq!((error.key, error.value.as_str()), (key, value), "{error}");
         }
     }
 }

@@ -12,7 +12,7 @@ use trial::Trial;
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 
 /// Maximum condition number for the fit of an initial yaw rate; above it the yaw rate is zero.
-const CONDITION_LIMIT: f64 = 1e9;
+const MAX_CONDITION: f64 = 1e9;
 
 /// Replay of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,7 +82,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     replay.rms().is_finite().then_some(replay)
 }
 
-/// Root mean square residual of the replays of some records over all headings, rad; `None` if a replay is not finite.
+/// Root mean square heading residual of a response on several records, rad; `None` if a replay is not finite.
 pub fn pooled_response_rms(trials: &[Trial], response: &FirstOrder) -> Option<f64> {
     let replays = trials.iter().map(|trial| replay(trial, response));
     Some(pooled_rms(&replays.collect::<Option<Vec<Replay>>>()?))
@@ -107,7 +107,7 @@ pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
     let centred: Vec<f64> = homogeneous.iter().map(|x| x - mean).collect();
     let spread = dot(&centred, &centred);
     // With the angle θ between 1 and φ₁ the condition number of the two is 2/θ, and θ² = spread / square.
-    let is_independent = spread.is_finite() && spread * CONDITION_LIMIT.powi(2) > 4.0 * square;
+    let is_independent = spread.is_finite() && spread * MAX_CONDITION.powi(2) > 4.0 * square;
     if !is_independent {
         // The transient of the initial yaw rate decays within a sample: only the heading can be fitted.
         return State { heading: level, yaw_rate: 0.0 };

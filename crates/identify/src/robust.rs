@@ -50,6 +50,6 @@ pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]
 }
 
 /// Long-run covariance of the scores of three unknowns, summed over trials.
-pub(crate) fn newey_west_of_three(scores: &[[Vec<f64>; 3]]) -> Matrix3<f64> {
+pub(crate) fn newey_west_three(scores: &[[Vec<f64>; 3]]) -> Matrix3<f64> {
     newey_west(scores).fixed_view::<3, 3>(0, 0).into_owned()
 }

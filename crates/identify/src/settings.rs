@@ -5,12 +5,12 @@ use thiserror::Error;
 
 /// Setting out of its range.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{key} = {found}: expected {expected}")]
+#[error("{key} = {value}: expected {expected}")]
 pub struct SettingsError {
     /// Key, as written in a scenario.
     pub key: &'static str,
-    /// Value found.
-    pub found: String,
+    /// Value of the setting, as text.
+    pub value: String,
     /// Accepted values, as text.
     pub expected: &'static str,
 }
@@ -18,7 +18,7 @@ pub struct SettingsError {
 impl SettingsError {
     /// Error that names the key, its value and the accepted values.
     pub fn new(key: &'static str, value: impl ToString, expected: &'static str) -> Self {
-        Self { key, found: value.to_string(), expected }
+        Self { key, value: value.to_string(), expected }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Verdict over the estimates of several methods: the recommended estimate, or the reason why none is accepted.
 //!
-//! The rule is that of [`Recommendation`]; [`answer::entry`](crate::answer::entry) makes the entries of the estimates.
+//! Rule: [`Recommendation`]. Entries of the estimates: [`method_entry`](crate::method_entry::method_entry).
 
 use document::fit::{Belief, VerdictEntry, VerdictReason};
 use document::method::MethodEntry;
@@ -23,8 +23,8 @@ const MIN_EXPLAINED_SHARE: f64 = 0.9;
 /// Ids of the methods against which every other estimate is checked for a contradiction.
 pub const REFERENCE_METHODS: [&str; 2] = ["output-error", "maximum-likelihood"];
 
-/// Verdict over the estimates of some methods to some records; `None` if no method gives an estimate.
-pub fn from_answers(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
+/// Verdict over the estimates of several methods from the same records; `None` if no method gives an estimate.
+pub fn from_estimates(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate>)]) -> Option<VerdictEntry> {
     let entries: &Vec<MethodEntry> = &answers.iter().map(|(entry, _)| entry.clone()).collect();
     let estimate_of = |id: &str| answers.iter().find(|(entry, _)| entry.id() == id)?.1.as_ref();
     let straight =

@@ -25,7 +25,7 @@ fn fit() -> Result<(), Box<dyn Error>> {
     all_warnings.extend(warnings);
     let mut answers = Vec::new();
     for method in registry::default_methods() {
-        let (entry, estimate) = answer::entry(method.id(), method.identify(&records), &records);
+        let (entry, estimate) = method_entry(method.id(), method.identify(&records), &records);
         match &estimate {
             Some(estimate) => {
                 println!("{:24} K = {:.4} 1/s, T = {:.2} s", method.id(), estimate.K().value, estimate.T().value);
@@ -35,7 +35,7 @@ fn fit() -> Result<(), Box<dyn Error>> {
         }
         answers.push((entry, estimate));
     }
-    match verdict::from_answers(&records, &answers) {
+    match verdict::from_estimates(&records, &answers) {
         None => println!("no method can identify this record"),
         Some(VerdictEntry { because: Some(because), .. }) => println!("no K and T can be taken, because {because}"),
         Some(verdict) => {

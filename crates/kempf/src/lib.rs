@@ -53,9 +53,10 @@ pub mod prelude {
     pub use campaign::{NoObserver, Observer};
     pub use document::fit::{Belief, VerdictEntry};
     pub use document::{Warning, WarningSource, Warnings};
+    pub use identify::method_entry::method_entry;
     pub use identify::{
-        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, answer, output_error,
-        registry, verdict,
+        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
+        verdict,
     };
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};

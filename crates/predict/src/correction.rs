@@ -24,8 +24,8 @@ use crate::error::PredictError;
 use crate::helm_replay::{SampleResult, SteeredZigZag};
 use crate::interval::PredictionInterval;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{check_completed, in_parallel};
-use crate::replay::{file_of, simplified};
+use crate::prediction::{check_completed, parallel_draws};
+use crate::replay::{record_file, simplified};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn};
 
@@ -119,9 +119,9 @@ pub fn difference_warnings(full: &IdentifiedShip, trial: &IdentifiedShip, loadin
     warnings
 }
 
-/// Warning on a difference between two models, the first at `loading`.
-pub fn difference_warning(what: &str, full: &str, trial: &str, loading: &str) -> Warning {
-    let text = format!("different {what}: {full} at {loading}, {trial} in the condition of the trial");
+/// Warning on a difference of a `quantity` between two models, the first at `loading`.
+pub fn difference_warning(quantity: &str, full: &str, trial: &str, loading: &str) -> Warning {
+    let text = format!("different {quantity}: {full} at {loading}, {trial} in the condition of the trial");
     WarningCode::ModelsApart.warning(text)
 }
 
@@ -181,14 +181,14 @@ pub fn correct(
             warnings.push(WarningCode::ModelsApart.warning(text));
         }
     }
-    let readings: Vec<f64> = in_parallel(draws, |replicate| {
+    let readings: Vec<f64> = parallel_draws(draws, |replicate| {
         StreamKey { seed: READING, cell: 0, replicate }.rng(Purpose::Heading).sample(StandardNormal)
     });
     let corrected = |&(name, measured): &(&str, Quantity)| {
         Some((name.to_owned(), ratio(name, measured, [&paired.full, &paired.trial], &readings)?))
     };
     let figures = paired.shown.iter().filter_map(corrected).collect();
-    let (file, name) = (file_of(record).to_owned(), record.name().to_owned());
+    let (file, name) = (record_file(record).to_owned(), record.name().to_owned());
     Ok(Correction { file, name, figures, warnings, ..Correction::default() })
 }
 
@@ -200,7 +200,7 @@ fn zig_zag(
     zigzag: &Measured,
     draws: usize,
 ) -> Option<PairedManoeuvre> {
-    let steered = SteeredZigZag::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
+    let steered = SteeredZigZag::from_measured(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown =
@@ -219,8 +219,7 @@ fn turned(
     let turn = HeldTurn::from_trial(record).zip(turn::resampled_record(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
     let measured = turn.figures(&passage).into_iter();
-    let shown: Vec<_> =
-        measured.filter_map(|(name, value)| Some((name, Quantity::without_uncertainty(value?)))).collect();
+    let shown: Vec<_> = measured.filter_map(|(key, mean)| Some((key, Quantity::without_uncertainty(mean?)))).collect();
     let Some(rudder) = turn.extended_rudder(record.rudder_signal()).filter(|_| !shown.is_empty()) else {
         return Ok(None);
     };
@@ -238,7 +237,7 @@ fn turned(
         figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
         Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
     };
-    let [full, trial] = [full, ballast].map(|mixture| in_parallel(draws, |number| sail(mixture, number)));
+    let [full, trial] = [full, ballast].map(|mixture| parallel_draws(draws, |number| sail(mixture, number)));
     Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
 }
 

@@ -50,8 +50,8 @@ impl HullSampler {
         let coefficients = form.coefficients().to_vec();
         let rows = stored.covariance.len();
         if rows != coefficients.len() {
-            let (what, expected) = ("rows of the covariance of a hull", coefficients.len());
-            return Err(IdentifiedShipError::Count { what, expected, found: rows }.into());
+            let (list, expected) = ("rows of the covariance of a hull", coefficients.len());
+            return Err(IdentifiedShipError::Count { list, expected, length: rows }.into());
         }
         let root = covariance_root(
             stored.trial_hull.as_ref().map_or(&stored.covariance, |from| &from.conditional_covariance),

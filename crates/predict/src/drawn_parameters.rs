@@ -5,7 +5,9 @@ use ship::ResponseModel;
 use simulate::{Purpose, StreamKey};
 
 use crate::error::PredictError;
-use crate::mixture::{DrawnShip, GOLDEN, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability};
+use crate::mixture::{
+    DrawnShip, GOLDEN_STEP, ShipMixture, StructureSampler, UncertaintySource, structure_at_probability,
+};
 
 /// Structure and parameters of a drawn ship; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +31,7 @@ impl ShipMixture {
     /// Structure and parameters of ship `number`, drawn from all sources of uncertainty as for the prediction of
     /// manoeuvres.
     pub fn draw_parameters(&self, number: u64) -> DrawnParameters {
-        let part = self.structure_of_draw(number);
+        let part = self.drawn_structure(number);
         let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
@@ -84,9 +86,9 @@ impl EstimateSampler {
         if structures.is_empty() { Err(PredictError::Empty) } else { Ok(Self { structures, seed }) }
     }
 
-    /// Draw number `number`: equal for equal seeds, whatever else is drawn.
+    /// Draw number `number`, which depends on the seed and the number alone.
     pub fn sample(&self, number: u64) -> DrawnEstimate {
-        let share = (0.5 + number as f64 * GOLDEN).fract();
+        let share = (0.5 + number as f64 * GOLDEN_STEP).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
         let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));

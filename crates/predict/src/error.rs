@@ -20,20 +20,20 @@ pub enum PredictError {
         "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m, and \
          --speed-kn where the record has no speed, to fit or trace so that a hull is fitted, or trace with --without {option}"
     )]
-    Needs {
+    MissingChannel {
         /// Name of the channel.
         channel: &'static str,
         /// Effect for the option `--without` of a trace.
         option: &'static str,
     },
     /// Too few drawn ships complete a manoeuvre.
-    #[error("{kind}: only {made} of {draws} drawn ships complete it; the model is not valid there")]
-    Lost {
-        /// The manoeuvre.
-        kind: String,
-        /// Ships that do.
-        made: usize,
-        /// Ships sampled.
+    #[error("{manoeuvre}: only {completed} of {draws} drawn ships complete it; the model is not valid there")]
+    TooFewCompleted {
+        /// Manoeuvre, as text.
+        manoeuvre: String,
+        /// Number of drawn ships that complete it.
+        completed: usize,
+        /// Number of drawn ships.
         draws: usize,
     },
 }

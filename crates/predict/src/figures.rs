@@ -8,19 +8,19 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use simulate::motion::turning_circle;
 use simulate::{HelmOrder, Manoeuvre};
-use trial::manoeuvre::INITIAL_TURN;
+use trial::manoeuvre::INITIAL_TURNING_CHANGE_RAD;
 
 use crate::interval::PredictionInterval;
 use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
-use crate::standard::EXECUTES;
+use crate::standard::ZIG_ZAG_EXECUTES;
 
 /// Figures of merit by name.
 pub type Characteristics = IndexMap<&'static str, Option<f64>>;
 
-pub(crate) const OVERSHOOTS: [&str; EXECUTES - 2] =
+pub(crate) const OVERSHOOT_NAMES: [&str; ZIG_ZAG_EXECUTES - 2] =
     ["first_overshoot_deg", "second_overshoot_deg", "third_overshoot_deg", "fourth_overshoot_deg"];
 
-pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
+pub(crate) const EXECUTE_TIME_NAMES: [&str; ZIG_ZAG_EXECUTES - 1] =
     ["second_execute_s", "third_execute_s", "fourth_execute_s", "fifth_execute_s", "sixth_execute_s"];
 
 /// Characteristics of a manoeuvre: overshoots, times, diameters; lengths in ship lengths if length and speed are known.
@@ -43,7 +43,7 @@ pub fn characteristics(
             let end = passage.time(passage.heading.len().saturating_sub(1));
             initial_turning(
                 passage,
-                passage.time_of_heading_change(INITIAL_TURN - 1e-9, side).or(Some(end)),
+                passage.time_of_heading_change(INITIAL_TURNING_CHANGE_RAD - 1e-9, side).or(Some(end)),
                 particulars,
             )
         }
@@ -109,7 +109,7 @@ pub(crate) fn is_possible(name: &str, interval: &PredictionInterval) -> bool {
 /// An overshoot is counted from the heading at its execute.
 fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
     let executes = &passage.executes;
-    for (number, name) in OVERSHOOTS.into_iter().enumerate() {
+    for (number, name) in OVERSHOOT_NAMES.into_iter().enumerate() {
         let overshoot = || {
             let (before, now, next) = (executes.get(number)?, executes.get(number + 1)?, executes.get(number + 2)?);
             let side = before.order.signum();
@@ -117,7 +117,7 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
         };
         figures.insert(name, overshoot());
     }
-    for (number, name) in EXECUTE_TIMES.into_iter().enumerate() {
+    for (number, name) in EXECUTE_TIME_NAMES.into_iter().enumerate() {
         figures.insert(name, executes.get(number + 1).map(|execute| execute.time));
     }
     figures.insert("period_s", execute_period(executes));

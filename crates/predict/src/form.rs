@@ -18,18 +18,18 @@ use simulate::{Manoeuvre, Side};
 use trial::imo::CriterionUnit;
 use trial::{Conditions, Loading};
 
-use crate::imo::{LIMITS, Limit};
+use crate::imo::{IMO_LIMITS, Limit};
 use crate::interval::PredictionInterval;
 use crate::prediction::Prediction;
-use crate::replay::file_of;
+use crate::replay::record_file;
 use crate::standard;
 use record::TestedManoeuvre;
 
 /// Limit on the track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
-pub const TRACK_REACH_LENGTHS: f64 = 15.0;
+pub const MAX_TRACK_REACH_LENGTHS: f64 = 15.0;
 
 /// Section of the stopping trial.
-pub const STOPPING: &str = "stopping";
+pub const STOPPING_SECTION: &str = "stopping";
 
 /// Maximum number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
 pub const MAX_DECIMALS: usize = 2;
@@ -39,13 +39,13 @@ pub const MAX_DECIMALS: usize = 2;
 pub struct Form {
     /// Entries in the order of the form.
     pub entries: Vec<ImoFormEntry>,
-    /// Remarks: conditions that are not met or unknown, and others.
+    /// Remarks: unmet or unknown conditions, untested sides, records outside the form.
     pub remarks: Vec<String>,
 }
 
 /// Manoeuvres of the form, to both sides.
 ///
-/// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
+/// Initial turning: 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
     standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().with_first_side(Side::Port), kind]).collect()
 }
@@ -121,11 +121,11 @@ pub fn fill<'a>(
     records: &[FormRecord<'a>],
     declared: Option<(&'a str, &'a Conditions)>,
 ) -> Form {
-    let tested: Vec<TestedManoeuvre> = records.iter().map(TestedManoeuvre::of).collect();
+    let tested: Vec<TestedManoeuvre> = records.iter().map(TestedManoeuvre::from_record).collect();
     let length = |particulars: Option<Particulars>| particulars.map(|ship| ship.length);
     let of_record = |FormRecord { trial, .. }: &FormRecord<'a>| {
         let form = trial.conditions();
-        Declared { file: file_of(trial), form, length: length(form.particulars.or(trial.particulars())) }
+        Declared { file: record_file(trial), form, length: length(form.particulars.or(trial.particulars())) }
     };
     let of_file = |(file, form): (&'a str, &'a Conditions)| Declared { file, form, length: length(form.particulars) };
     let declarations: Vec<Declared> = records.iter().map(of_record).chain(declared.map(of_file)).collect();
@@ -139,7 +139,7 @@ pub fn fill<'a>(
     let mut entries: Vec<ImoFormEntry> = FIELDS.iter().map(field).collect();
     entries.push(loading(&tested));
     // The order of the form.
-    for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
+    for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &IMO_LIMITS[place]) {
         for side in ["port", "starboard"] {
             let from_record = measured(limit, side, &tested);
             entries.push(ImoFormEntry {
@@ -153,9 +153,9 @@ pub fn fill<'a>(
         }
     }
     entries.push(ImoFormEntry {
-        limit: Some(TRACK_REACH_LENGTHS),
+        limit: Some(MAX_TRACK_REACH_LENGTHS),
         source: "never predicted: no model of this program goes astern; measure the stopping trial".into(),
-        ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
+        ..entry(STOPPING_SECTION, "track reach", "ship lengths", None, String::new())
     });
     let mut remarks = remarks::remarks(&tested, declared, particulars);
     if entries.iter().any(|entry| entry.extrapolated.is_some()) {
@@ -175,7 +175,7 @@ pub fn fill<'a>(
 fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
-        let file = file_of(record.trial);
+        let file = record_file(record.trial);
         let corrected = record.correction.and_then(|all| Some((all, all.figures.get(limit.figure)?)));
         if let Some((correction, figure)) = corrected {
             let is_doubtful = !(figure.warnings.is_empty() && correction.warnings.is_empty());
@@ -200,7 +200,7 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<Imo
             ImoFormEntry { value: number(quantity.value), sd: quantity.sd, source, ..ImoFormEntry::default() },
         ))
     };
-    let entries = tested.iter().filter(|tested| tested.is(limit.manoeuvre, side)).filter_map(show);
+    let entries = tested.iter().filter(|tested| tested.matches(limit.manoeuvre, side)).filter_map(show);
     entries.min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
 }
 
@@ -262,7 +262,7 @@ fn range(interval: &PredictionInterval) -> String {
 
 /// Loading of the ship in her tests.
 fn loading(tested: &[TestedManoeuvre]) -> ImoFormEntry {
-    let used: Vec<FormRecord> = tested.iter().filter(|test| test.what.is_some()).map(|test| test.record).collect();
+    let used: Vec<FormRecord> = tested.iter().filter(|test| test.manoeuvre.is_some()).map(|test| test.record).collect();
     let any = |is: fn(&FormRecord) -> bool| used.iter().any(is);
     let is_partial = |record: &FormRecord| record.correction.is_none() && record.loading() == Some(Loading::Partial);
     let statements = [
@@ -329,9 +329,9 @@ mod tests {
     #[test]
     fn a_trial_at_partial_load_is_corrected_or_reported() {
         let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::identified_ship());
-        let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
-            known.members[0].parameters[1] *= gain;
-            testing::mixture(known)
+        let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut ship, gain)| {
+            ship.members[0].parameters[1] *= gain;
+            testing::mixture(ship)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");

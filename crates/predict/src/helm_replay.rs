@@ -6,11 +6,11 @@ use ship::angle::to_deg;
 use simulate::Manoeuvre;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
-use crate::figures::{self, Characteristics, EXECUTE_TIMES, OVERSHOOTS};
+use crate::figures::{self, Characteristics, EXECUTE_TIME_NAMES, OVERSHOOT_NAMES};
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::in_parallel;
+use crate::prediction::parallel_draws;
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
-use crate::standard::{self, EXECUTES};
+use crate::standard::{self, ZIG_ZAG_EXECUTES};
 
 /// Relative tolerance between a mean angle of a zig-zag and the nominal angle.
 const TOLERANCE: f64 = 0.05;
@@ -39,7 +39,7 @@ pub(crate) struct SteeredZigZag {
 impl SteeredZigZag {
     /// Zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of the
     /// ship, rad/s. `None` if the record begins within the trial, or has a single execute.
-    pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
+    pub fn from_measured(measured: &Measured, approach: f64) -> Option<Self> {
         let side = measured.first_side?;
         let executes = &measured.executes;
         if executes.len() < 2 {
@@ -74,7 +74,7 @@ impl SteeredZigZag {
         // The record gives the yaw rate of the approach.
         let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
         let sources: Vec<UncertaintySource> = UncertaintySource::ALL.into_iter().filter(is_drawn).collect();
-        in_parallel(draws, |number| {
+        parallel_draws(draws, |number| {
             let mut ship = mixture.draw_ship(number, &sources);
             ship.yaw_rate += self.yaw_rate;
             ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
@@ -105,7 +105,7 @@ pub(crate) fn measured_characteristic(
         let sd = time.sd.zip(begin.sd).map(|(end, start)| end.hypot(start));
         Quantity::new(time.value - begin.value, sd)
     };
-    match (place(&OVERSHOOTS), place(&EXECUTE_TIMES), name) {
+    match (place(&OVERSHOOT_NAMES), place(&EXECUTE_TIME_NAMES), name) {
         (Some(number), ..) => Some(measured.nth_overshoot(number)?.angle.scaled(to_deg(1.0))),
         (_, Some(number), _) => Some(since(measured.executes.get(number)?.time)),
         (.., "initial_turning_time_s") => measured.initial_turning_time,
@@ -116,7 +116,7 @@ pub(crate) fn measured_characteristic(
             let way = measured.initial_turning_distance.or_else(|| Some(speed? * time.value))?;
             Some(Quantity::new(way / length, time.sd.map(|sd| sd * way / (time.value * length))))
         }
-        (.., "period_s") => measured.period_of(EXECUTES),
+        (.., "period_s") => measured.period_over(ZIG_ZAG_EXECUTES),
         _ => None,
     }
 }

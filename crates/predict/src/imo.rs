@@ -37,12 +37,12 @@ pub(crate) const ZIG_ZAG_10_10: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const ZIG_ZAG_20_20: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const TURNING_CIRCLE_35: FormManoeuvre = "turning-circle 35";
 
-/// Rudder of that circle and its tolerance, rad. The resolution also allows the maximum rudder angle, which no model
-/// gives.
+/// Rudder angle of the turning circle and its tolerance, rad. The resolution also allows the maximum rudder angle,
+/// which no model gives.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
 pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
-/// Limit of the resolution.
+/// Limit of IMO resolution MSC.137(76) on a figure of merit.
 pub(crate) struct Limit {
     /// Name of the limit, and its section and field in the form.
     pub name: &'static str,
@@ -77,7 +77,7 @@ const IN_TEN: Limit = Limit {
 };
 
 /// Limits of the resolution. Source: MSC.137(76), 5.3.
-pub(crate) const LIMITS: [Limit; 6] = [
+pub(crate) const IMO_LIMITS: [Limit; 6] = [
     Limit {
         name: "initial turning",
         section: "initial turning",
@@ -131,14 +131,14 @@ impl Limit {
 
 /// Criterion that limits a characteristic of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit
 /// for a ship with this L/V, s; `None` if there is none.
-pub fn limit_of(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
+pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
         |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
-    LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
+    IMO_LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
-/// Criteria of some predicted manoeuvres, for a ship of this length and speed.
+/// IMO criteria with the predicted values, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;
@@ -155,7 +155,7 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Pre
     };
     let mut criteria = Vec::new();
     for prediction in predictions {
-        let limits = LIMITS.iter().filter(|limit| limit.is_answered_by(&prediction.kind));
+        let limits = IMO_LIMITS.iter().filter(|limit| limit.is_answered_by(&prediction.kind));
         criteria.extend(limits.filter_map(|limit| answer(prediction, limit)));
     }
     criteria
@@ -186,8 +186,8 @@ mod tests {
         }
         // L/V = 12.5 s.
         assert!((predicted[1].limit - 11.25).abs() < 1e-12);
-        let (name, limit) = limit_of("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
+        let (name, limit) = imo_limit("zig-zag 10/10 first_overshoot_deg", 12.5).expect("it is limited");
         assert_eq!((name, limit), ("10/10 first overshoot", predicted[1].limit));
-        assert_eq!(limit_of("zig-zag 20/20 second_overshoot_deg", 12.5), None);
+        assert_eq!(imo_limit("zig-zag 20/20 second_overshoot_deg", 12.5), None);
     }
 }

@@ -15,7 +15,7 @@ pub struct PredictionInterval {
     pub ci90: [f64; 2],
 }
 
-/// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are sorted in place.
+/// Quantiles of 5, 25, 50, 75 and 95 % of the values, which are sorted in place.
 ///
 /// # Panics
 /// Without a value.
@@ -25,7 +25,7 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
 }
 
 impl PredictionInterval {
-    /// Intervals of some samples, which are sorted in place; `None` without samples.
+    /// Median and intervals of samples, which are sorted in place; `None` without samples.
     pub fn from_samples(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })

@@ -26,7 +26,7 @@ impl TurnTrack<'_> {
     }
 }
 
-/// Median circle of some turns to a side (±1), as far as half of them go and at most once around; empty without a turn.
+/// Median track of turns to one side (±1), as far as half of them go, at most one round; empty without a turn.
 pub(crate) fn median_track(turns: &[TurnTrack], side: f64) -> Vec<[f64; 2]> {
     let place = |point: usize| {
         let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();

@@ -171,7 +171,7 @@ impl ShipMixture {
     pub fn draw_ship(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
-        let part = if has(UncertaintySource::Structure) { self.structure_of_draw(number) } else { self.likeliest() };
+        let part = if has(UncertaintySource::Structure) { self.drawn_structure(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
@@ -196,8 +196,7 @@ impl ShipMixture {
             true => hull.sample(&mut rng, &mut key.indexed_rng(Purpose::Specification, 3)),
             false => hull.stored.values(),
         });
-        let hull =
-            part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, values)| hull.hull_or_most_probable(values));
+        let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, drawn)| hull.hull_or_most_probable(drawn));
         let approach = random_part(UncertaintySource::InitialState, approach_normal * stored.approach_yaw_rate_rad_s);
         let of_hull = part.hull.as_ref().map_or(0.0, |hull| hull.stored.beginning_yaw_rate_rad_s);
         let error = random_part(UncertaintySource::ProcessNoise, start_normal * of_hull);
@@ -240,15 +239,15 @@ impl ShipMixture {
 
     /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
     /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
-    pub(crate) fn structure_of_draw(&self, number: u64) -> &StructureSampler {
+    pub(crate) fn drawn_structure(&self, number: u64) -> &StructureSampler {
         let step =
-            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
+            if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN_STEP };
         structure_at_probability(&self.parts, (0.5 + number as f64 * step).fract()).unwrap_or_else(|| self.likeliest())
     }
 }
 
-/// Golden ratio minus one.
-pub(crate) const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Golden ratio minus one, the step of a low-discrepancy sequence.
+pub(crate) const GOLDEN_STEP: f64 = 0.618_033_988_749_894_9;
 
 /// Structure at a cumulative probability; `None` if rounding leaves a remainder.
 pub(crate) fn structure_at_probability(parts: &[StructureSampler], mut share: f64) -> Option<&StructureSampler> {
@@ -283,7 +282,7 @@ impl StructureSampler {
         {
             let needs = self.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
             if needs && ship.hulls.is_empty() {
-                return Err(PredictError::Needs { channel, option });
+                return Err(PredictError::MissingChannel { channel, option });
             }
         }
         Ok(self)
@@ -411,8 +410,8 @@ mod tests {
             constants: Vec::new(),
         });
         stored.members[0].parameters.push(-3.1);
-        assert_eq!(stored.rudder_logged_late(), Some(3.1));
-        assert_eq!(testing::identified_ship().rudder_logged_late(), None);
+        assert_eq!(stored.logged_rudder_delay(), Some(3.1));
+        assert_eq!(testing::identified_ship().logged_rudder_delay(), None);
         let kind = "zig-zag:10/10".parse().expect("known");
         let [own, late] = [testing::identified_ship(), stored].map(|stored| {
             testing::mixture(stored).predict(&kind, 40, false).expect("ships that come to the end of it").figures

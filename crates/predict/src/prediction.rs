@@ -137,14 +137,14 @@ impl Prediction {
 const TRACKS: u64 = 40;
 
 /// Error for a manoeuvre that too few drawn ships complete.
-pub(crate) fn too_few_error(what: impl ToString, made: usize, draws: usize) -> PredictError {
-    PredictError::Lost { kind: what.to_string(), made, draws }
+pub(crate) fn too_few_error(manoeuvre: impl ToString, made: usize, draws: usize) -> PredictError {
+    PredictError::TooFewCompleted { manoeuvre: manoeuvre.to_string(), completed: made, draws }
 }
 
 /// Fails if less than half of the drawn ships complete a manoeuvre.
-pub(crate) fn check_completed(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
+pub(crate) fn check_completed(manoeuvre: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
     if made == 0 || (made as f64) < MIN_COMPLETED_SHARE * draws as f64 {
-        Err(too_few_error(what, made, draws))
+        Err(too_few_error(manoeuvre, made, draws))
     } else {
         Ok(())
     }
@@ -175,7 +175,7 @@ impl ShipMixture {
             heading: passage.heading,
             is_shown: number < TRACKS,
         };
-        let all = in_parallel(draws, |number| {
+        let all = parallel_draws(draws, |number| {
             let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
             Some((figures, series(number, passage)))
         });
@@ -210,9 +210,8 @@ impl ShipMixture {
         let curve = |number, sources: &[UncertaintySource]| {
             SteadyCurve::from_ship(&self.draw_ship(number, sources), kind.max_rudder(), self.timescale())
         };
-        let all: Vec<SteadyCurve> = in_parallel(draws, |number| curve(number, &UncertaintySource::ALL));
-        let values: Vec<Option<Characteristics>> =
-            all.iter().map(|curve| Some(curve.figures(kind.max_rudder()))).collect();
+        let all: Vec<SteadyCurve> = parallel_draws(draws, |number| curve(number, &UncertaintySource::ALL));
+        let values: Vec<Option<Characteristics>> = all.iter().map(|run| Some(run.figures(kind.max_rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
@@ -235,7 +234,7 @@ impl ShipMixture {
 }
 
 /// Results of `draws` drawn ships, computed in parallel, in the order of their numbers.
-pub(crate) fn in_parallel<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+pub(crate) fn parallel_draws<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
@@ -246,8 +245,7 @@ fn predicted(
     sources: &[UncertaintySource],
     draw: impl Fn(u64, &[UncertaintySource]) -> Option<Characteristics> + Sync + Send,
 ) -> IndexMap<String, PredictedFigure> {
-    let alone =
-        |source: &UncertaintySource| in_parallel(draws.len().div_ceil(RATIO), |number| draw(number, &[*source]));
+    let alone = |source: &UncertaintySource| parallel_draws(draws.len().div_ceil(RATIO), |k| draw(k, &[*source]));
     let alone: Vec<(&str, Vec<_>)> = sources.iter().map(|source| (source.as_str(), alone(source))).collect();
     let figure = |&name: &&'static str| {
         let value = |draw: &Option<Characteristics>| draw.as_ref().and_then(|figures| *figures.get(name)?);
@@ -292,9 +290,9 @@ mod tests {
     use crate::testing;
 
     fn mixture(change: impl Fn(&mut document::identified_ship::IdentifiedShip)) -> ShipMixture {
-        let mut known = testing::identified_ship();
-        change(&mut known);
-        testing::mixture(known)
+        let mut ship = testing::identified_ship();
+        change(&mut ship);
+        testing::mixture(ship)
     }
 
     fn kind(text: &str) -> Manoeuvre {
@@ -304,12 +302,12 @@ mod tests {
     /// Without uncertainty every drawn ship is the most probable ship.
     #[test]
     fn what_is_known_for_certain_has_no_interval() {
-        let sure = mixture(|known| {
-            known.members[0].covariance.clear();
-            known.members[0].fitted.clear();
-            known.noise.moment = document::RandomMoment::None;
-            known.gear.as_mut().expect("made up").sd_rad_s = 0.0;
-            known.approach_yaw_rate_rad_s = 0.0;
+        let sure = mixture(|ship| {
+            ship.members[0].covariance.clear();
+            ship.members[0].fitted.clear();
+            ship.noise.moment = document::RandomMoment::None;
+            ship.gear.as_mut().expect("made up").sd_rad_s = 0.0;
+            ship.approach_yaw_rate_rad_s = 0.0;
         });
         let prediction = sure.predict(&kind("zig-zag:10/10"), 8, true).expect("a manoeuvre");
         for (name, figure) in &prediction.figures {
@@ -323,9 +321,9 @@ mod tests {
     /// An absent source has a share of zero, and the shares add up to one.
     #[test]
     fn shares_add_up_and_name_the_source() {
-        let noisy = mixture(|known| {
-            known.members[0].covariance.clear();
-            known.members[0].fitted.clear();
+        let noisy = mixture(|ship| {
+            ship.members[0].covariance.clear();
+            ship.members[0].fitted.clear();
         });
         let prediction = noisy.predict(&kind("zig-zag:10/10"), 200, true).expect("a manoeuvre");
         let first = &prediction.figures["first_overshoot_deg"];
@@ -360,7 +358,7 @@ mod tests {
 
     #[test]
     fn a_ship_that_does_not_answer_is_refused() {
-        let lost = mixture(|known| known.members[0].parameters[2] = -0.5);
+        let lost = mixture(|ship| ship.members[0].parameters[2] = -0.5);
         let error = lost.predict(&kind("zig-zag:10/10"), 8, false).expect_err("it never turns to starboard");
         assert!(error.to_string().contains("0 of 8"), "{error}");
     }

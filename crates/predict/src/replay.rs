@@ -18,7 +18,7 @@ use crate::helm_replay::{self, SteeredZigZag};
 use crate::interval::{PredictionInterval, band};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
-use crate::prediction::{BandedCurve, check_completed, in_parallel, too_few_error};
+use crate::prediction::{BandedCurve, check_completed, parallel_draws, too_few_error};
 use crate::simulated_manoeuvre::SimulatedManoeuvre;
 use crate::turn::{self, HeldTurn, TurnTracks};
 
@@ -72,7 +72,7 @@ pub struct RecordReplay {
 }
 
 /// File of a record, as the user named it.
-pub fn file_of(trial: &Trial) -> &str {
+pub fn record_file(trial: &Trial) -> &str {
     match trial.origin() {
         Origin::Measured { file, .. } => file,
         Origin::Simulated { .. } => trial.name(),
@@ -143,7 +143,7 @@ impl ShipMixture {
             Some((passage, headings))
         };
         let (made, headings): (Vec<SimulatedManoeuvre>, Vec<Vec<f64>>) =
-            in_parallel(draws, of_draw).into_iter().flatten().unzip();
+            parallel_draws(draws, of_draw).into_iter().flatten().unzip();
         check_completed(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
@@ -157,7 +157,7 @@ impl ShipMixture {
             _ => turns(trial, &most_probable, &made, self.timescale(), current),
         };
         Ok(Some(RecordReplay {
-            file: file_of(trial).to_owned(),
+            file: record_file(trial).to_owned(),
             name: trial.name().to_owned(),
             rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
             band_coverage_90: held as f64 / rows.len() as f64,
@@ -185,7 +185,7 @@ impl ShipMixture {
 
     /// Overshoots, times and period of a measured zig-zag, compared with its simulation.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
-        let Some(steered) = SteeredZigZag::of(measured, self.first().approach_yaw_rate_rad_s) else {
+        let Some(steered) = SteeredZigZag::from_measured(measured, self.first().approach_yaw_rate_rad_s) else {
             return Ok(ByName::new());
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
@@ -258,7 +258,7 @@ fn turns(
     };
     let drawn: Vec<Characteristics> = made.iter().enumerate().map(drawn_figures).collect();
     let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::without_uncertainty));
-    (figures, TurnTracks::of(&turn, &record, most_probable, made))
+    (figures, TurnTracks::from_ships(&turn, &record, most_probable, made))
 }
 
 #[cfg(test)]
@@ -315,19 +315,18 @@ mod tests {
     /// in a calm.
     #[test]
     fn hulls_meet_the_wind_of_a_record() {
-        let known = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };
+        let ship = IdentifiedShip { hulls: vec![testing::hull("quadratic")], ..testing::identified_ship() };
         let wind = [(Channel::WindTrueSpeed, 9.0), (Channel::WindTrueFrom, 0.5), (Channel::Speed, 6.0)];
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
         let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
         let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
         let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
-        let of =
-            |known: IdentifiedShip| testing::mixture(known).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
-        let met = of(known.clone()).disturbances.wind.expect("a wind");
+        let of = |ship: IdentifiedShip| testing::mixture(ship).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
+        let met = of(ship.clone()).disturbances.wind.expect("a wind");
         assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
         assert_eq!(of(testing::identified_ship()).disturbances.wind, None);
-        assert_eq!(of(known.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
+        assert_eq!(of(ship.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }
 
     #[test]

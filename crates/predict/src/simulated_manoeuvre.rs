@@ -56,7 +56,7 @@ pub struct PlanarMotion {
 
 impl PlanarMotion {
     /// Velocity and track of a ship of this length, m; `None` if the record has no speed or sway.
-    fn of(length: f64, trial: &Trial, heading: &[f64]) -> Option<Self> {
+    fn from_trial(length: f64, trial: &Trial, heading: &[f64]) -> Option<Self> {
         let (speed, sway) = (trial.channel(Channel::Speed)?, trial.channel(Channel::Sway)?);
         let surge = |(speed, sway): (&f64, &f64)| [(speed * speed - sway * sway).max(0.0).sqrt(), *sway];
         let velocity: Vec<[f64; 2]> = speed.iter().zip(sway).map(surge).collect();
@@ -155,7 +155,7 @@ impl SimulatedManoeuvre {
         let SimulatedTrial { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
         let length = simulation.ship.particulars().map(|particulars| particulars.length);
-        let way = length.and_then(|length| PlanarMotion::of(length, &trial, &heading));
+        let way = length.and_then(|length| PlanarMotion::from_trial(length, &trial, &heading));
         Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 

@@ -4,7 +4,7 @@ use ship::angle::from_deg;
 use simulate::Manoeuvre;
 
 /// Number of executes of a predicted zig-zag, which gives four complete overshoots.
-pub(crate) const EXECUTES: usize = 6;
+pub(crate) const ZIG_ZAG_EXECUTES: usize = 6;
 
 /// Change of heading of a predicted turning circle, rad: a little more than the 540° after which speed, drift and pivot
 /// of a steady turn can be read.
@@ -26,7 +26,7 @@ pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
 pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {
-        Manoeuvre::ZigZag { executes, .. } => *executes = Some(EXECUTES),
+        Manoeuvre::ZigZag { executes, .. } => *executes = Some(ZIG_ZAG_EXECUTES),
         Manoeuvre::TurningCircle { heading_change, .. } => *heading_change = Some(TURN),
         Manoeuvre::PullOut { hold, duration, .. } => [*hold, *duration] = [PULL_OUT * timescale; 2],
         Manoeuvre::Williamson { duration, .. } => *duration = AFTER_WILLIAMSON * timescale,

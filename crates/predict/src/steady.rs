@@ -39,10 +39,10 @@ impl SteadyCurve {
             Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),
         };
-        Self::of_turns(steady, largest, timescale)
+        Self::from_turns(steady, largest, timescale)
     }
 
-    fn of_turns(steady: impl Fn(f64) -> Option<f64>, largest: f64, timescale: f64) -> Self {
+    fn from_turns(steady: impl Fn(f64) -> Option<f64>, largest: f64, timescale: f64) -> Self {
         let mut curve = Self::default();
         let end = |side: f64| {
             let is_within = |rate: f64| steady(side * rate).is_some_and(|rudder| side * rudder < largest);
@@ -121,7 +121,7 @@ mod tests {
     fn curve(inverse_time: f64) -> SteadyCurve {
         let model = ResponseModel::new(vec![listed_effect("nonlinear_damping", "r³")]);
         let ship = model.with_parameters(vec![inverse_time, 6e-3, 0.0, 300.0]);
-        SteadyCurve::of_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
+        SteadyCurve::from_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
     }
 
     /// a r + n r³ = b δ with a < 0: the loop ends at r = √(−a/3n), δ = ∓(2/3)(−a/b) r, and the outer branches cross

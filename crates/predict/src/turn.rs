@@ -28,7 +28,7 @@ const DEFAULT_TIMESCALES: f64 = 40.0;
 const DRAWN_TRACKS: usize = 40;
 
 /// Uniform current from a circle of 720° or more; `None` for any other record, and without positions.
-pub fn current_of(trial: &Trial) -> Option<Current> {
+pub fn estimated_current(trial: &Trial) -> Option<Current> {
     let turn = HeldTurn::from_trial(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
     let has_position = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
@@ -42,7 +42,7 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
 /// Record with the current removed from the positions, and that current: the given one, or else the current that the
 /// record determines.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
-    match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
+    match given.or_else(|| estimated_current(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
         Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
         None => (trial, None),
     }
@@ -202,7 +202,7 @@ pub struct TurnTracks {
 
 impl TurnTracks {
     /// Tracks of a recorded turn; `None` without positions, and for a model without drift.
-    pub(crate) fn of(
+    pub(crate) fn from_ships(
         turn: &HeldTurn,
         record: &SimulatedManoeuvre,
         most_probable: &SimulatedManoeuvre,
@@ -227,8 +227,7 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
     let period = simulated_manoeuvre::row_interval(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let on_rows = |rows: &mut dyn Iterator<Item = usize>, values: &[f64]| -> Option<Vec<f64>> {
-        let read =
-            rows.filter(|&row| values[row].is_finite()).map(|row| (trial.time()[row] - trial.time()[0], values[row]));
+        let read = rows.filter(|&k| values[k].is_finite()).map(|k| (trial.time()[k] - trial.time()[0], values[k]));
         let (times, values) = read.unzip();
         let signal = Polyline::new(times, values).ok()?;
         Some((0..count).map(|row| signal.value_at(row as f64 * period)).collect())

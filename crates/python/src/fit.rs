@@ -73,9 +73,9 @@ pub fn fit(
         let mut warnings = Warnings::default();
         warnings.extend(reading.iter().cloned().chain(repetition_warnings(&records, &validation)));
         let done = work::fit::fit([&records, &validation], &methods, &priors, true, warnings)?.with_predicted_circle();
-        let warnings = sentences(done.document.answer_warnings().filter(|warning| !reading.contains(warning)));
+        let warnings = sentences(done.document.verdict_warnings().filter(|warning| !reading.contains(warning)));
         Ok(PyFit {
-            text: documents::text(&done.document).map_err(Failure::work)?,
+            text: documents::text(&done.document).map_err(Failure::execution)?,
             warnings,
             trials: [done.records.trials, done.records.held_out].concat(),
             answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),

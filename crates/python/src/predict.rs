@@ -44,6 +44,6 @@ pub fn predict(
             PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
         let warnings = sentences(predicted.warnings.iter().filter(|warning| !reading.contains(warning)));
-        Ok((documents::text(&predicted).map_err(Failure::work)?, warnings))
+        Ok((documents::text(&predicted).map_err(Failure::execution)?, warnings))
     })
 }

@@ -1,6 +1,6 @@
 //! Failures as Python exceptions, with the message of the command line.
 
-use campaign::failure::{Blame, Failure};
+use campaign::failure::{Failure, FailureKind};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -17,8 +17,8 @@ create_exception!(kempf, KempfWarning, PyUserWarning, "A remark on a record or a
 
 /// Python exception for a failure.
 pub fn raised(failure: Failure) -> PyErr {
-    match failure.blame {
-        Blame::Input => KempfError::new_err(failure.message),
-        Blame::Work | Blame::Interrupted => WorkError::new_err(failure.message),
+    match failure.kind {
+        FailureKind::Input => KempfError::new_err(failure.message),
+        FailureKind::Work | FailureKind::Interrupted => WorkError::new_err(failure.message),
     }
 }

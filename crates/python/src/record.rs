@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use study::options::ReadingOptions;
-use study::records::{expand, file_of, read_all, source, trial_from_log};
+use study::records::{expand, file_and_hash, read_all, source, trial_from_log};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
@@ -64,12 +64,12 @@ impl PyRecord {
 
     #[getter]
     fn file(&self) -> &str {
-        file_of(&self.trial).0
+        file_and_hash(&self.trial).0
     }
 
     #[getter]
     fn sha256(&self) -> &str {
-        file_of(&self.trial).1
+        file_and_hash(&self.trial).1
     }
 
     #[getter]
@@ -116,8 +116,8 @@ impl PyRecord {
     /// CSV text of the record.
     fn csv(&self) -> PyResult<String> {
         let mut table = Vec::new();
-        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::work(error)))?;
-        String::from_utf8(table).map_err(|error| raised(Failure::work(error)))
+        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::execution(error)))?;
+        String::from_utf8(table).map_err(|error| raised(Failure::execution(error)))
     }
 }
 
@@ -195,8 +195,8 @@ fn table(columns: &[(String, PyColumn)]) -> Result<Vec<u8>, Failure> {
         }
         Ok::<(), csv::Error>(())
     })();
-    written.map_err(Failure::work)?;
-    table.into_inner().map_err(Failure::work)
+    written.map_err(Failure::execution)?;
+    table.into_inner().map_err(Failure::execution)
 }
 
 impl PyColumn<'_> {

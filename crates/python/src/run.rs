@@ -74,7 +74,7 @@ fn pool(count: i64) -> Result<ThreadPool, Failure> {
         return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MAX_THREADS}")));
     }
     let pool = ThreadPoolBuilder::new().num_threads(count as usize).build();
-    pool.map_err(|error| Failure::work(format!("failed to start {count} threads: {error}")))
+    pool.map_err(|error| Failure::execution(format!("failed to start {count} threads: {error}")))
 }
 
 /// Document of a study, after its missing trials were run and the study was published.

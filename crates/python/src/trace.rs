@@ -63,7 +63,7 @@ pub fn trace(
             true,
             &mut warnings,
         )?;
-        let text = documents::text(&traced.document).map_err(Failure::work)?;
+        let text = documents::text(&traced.document).map_err(Failure::execution)?;
         let records = traced.curves()?.records;
         let warnings = sentences(traced.document.warnings.iter().filter(|warning| !reading.contains(warning)));
         Ok(PyTrace { text, warnings, records })

@@ -25,7 +25,7 @@ impl<T: Send + 'static> Underway<T> {
         // The receiver no longer exists if the wait was abandoned.
         let run = move || drop(send.send(work()));
         let thread = thread::Builder::new().name("kempf".into()).stack_size(STACK).spawn(run);
-        thread.map_err(|error| raised(Failure::work(format!("failed to start a thread: {error}"))))?;
+        thread.map_err(|error| raised(Failure::execution(format!("failed to start a thread: {error}"))))?;
         Ok(Self(receive))
     }
 
@@ -36,7 +36,7 @@ impl<T: Send + 'static> Underway<T> {
             Ok(done) => Some(done.map_err(raised)),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
-                Some(Err(raised(Failure::work("internal error; details are on standard error"))))
+                Some(Err(raised(Failure::execution("internal error; details are on standard error"))))
             }
         }
     }

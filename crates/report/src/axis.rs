@@ -22,7 +22,7 @@ const MAX_MAGNITUDE: f64 = 1e100;
 /// Maximum distance beyond the ends of an axis at which values are drawn, in its lengths; integers would overflow.
 const FAR: f64 = 20.0;
 /// Maximum number of intervals between the ticks of an axis.
-pub(crate) const MAX_TICKS: usize = 10;
+pub(crate) const MAX_TICK_INTERVALS: usize = 10;
 /// Margin for labels right of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
 /// Maximum number of decades of a logarithmic axis with lines between the decades.
@@ -195,7 +195,8 @@ impl Axis {
             let is_wrapped = !self.fits(width, font) && self.labels().all(has_room);
             return if is_wrapped { self.wrapped(font, pitch) } else { self };
         }
-        let fitting = (2..=MAX_TICKS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
+        let fitting =
+            (2..=MAX_TICK_INTERVALS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
         let mut fewest = fitting.unwrap_or_else(|| self.ticked(1));
         if !fewest.fits(width, font) && fewest.ticks.len() > 2 {
             // The ends alone determine the scale.
@@ -218,8 +219,7 @@ impl Axis {
         let (lo, hi) = (self.lo, self.hi.min(self.last));
         let unit = tick_rule.unit(hi - lo);
         // A single label does not determine the scale, so the step shrinks until there are two.
-        let mut values =
-            (count + 1..count + 20).map(|most| RangedCoordf64::from(lo / unit..hi / unit).key_points(most));
+        let mut values = (count + 1..count + 20).map(|max| RangedCoordf64::from(lo / unit..hi / unit).key_points(max));
         let values: Vec<f64> = values.find(|values| values.len() > 1).unwrap_or_default();
         let values: Vec<f64> = values.into_iter().map(|value| unit * value).collect();
         let labels = linear_labels(&values);

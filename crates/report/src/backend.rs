@@ -23,7 +23,7 @@ use crate::palette::{Dash, PAPER};
 use crate::printable::is_printable;
 
 /// Units per point on the page: 2.4 per dot at 600 dpi, so rounding to whole units is invisible.
-pub(crate) const UNITS: f64 = 20.0;
+pub(crate) const UNITS_PER_POINT: f64 = 20.0;
 
 /// Height of the drawing sheet, units; the page ends where the figure ends.
 const TALLEST: u32 = 2_000_000;
@@ -39,7 +39,7 @@ type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
 
 /// Length in units.
 pub(crate) fn units(points: f64) -> i32 {
-    (points * UNITS).round() as i32
+    (points * UNITS_PER_POINT).round() as i32
 }
 
 /// A rectangle in units: left, top, right and bottom.
@@ -130,7 +130,7 @@ impl Svg {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}pt\" height=\"{height:.3}pt\" \
              viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" stroke-linejoin=\"bevel\">\n\
              <polygon fill=\"{paper}\" points=\"0,0 {across},0 {across},{down} 0,{down}\"/>\n{}</g>\n</svg>\n",
-            f64::from(across) / UNITS,
+            f64::from(across) / UNITS_PER_POINT,
             document.elements
         )
     }
@@ -197,7 +197,7 @@ impl SvgDocument {
 
     fn colour(&self, colour: BackendColor) -> String {
         let (red, green, blue) = colour.rgb;
-        let RGBColor(red, green, blue) = self.changes.of(RGBColor(red, green, blue));
+        let RGBColor(red, green, blue) = self.changes.replacement(RGBColor(red, green, blue));
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
 
@@ -218,7 +218,7 @@ impl SvgDocument {
         let steps = || points.windows(2).map(|ends| (ends[1].0 - ends[0].0, ends[1].1 - ends[0].1));
         let length: f64 = steps().map(|(dx, dy)| f64::from(dx).hypot(f64::from(dy))).sum();
         let dash = self.group.as_ref().and_then(|open| open.group.dash);
-        let pattern = dash.map_or(0.0, |(dash, width)| dash.iter().sum::<f64>() * width * UNITS);
+        let pattern = dash.map_or(0.0, |(dash, width)| dash.iter().sum::<f64>() * width * UNITS_PER_POINT);
         let solid = pattern > 0.0 && length > MAX_REPEATS * pattern;
         let (colour, faint) = (self.colour(ink), opacity("stroke", ink.alpha));
         let solid = if solid { " stroke-dasharray=\"none\"" } else { "" };
@@ -356,7 +356,7 @@ impl DrawingBackend for Svg {
     }
 }
 
-/// Opacity attribute of translucent ink; an attribute of the whole element would need a layer of its own, slow to draw.
+/// Opacity attribute of translucent ink; an attribute of the whole element would need a separate layer, slow to draw.
 fn opacity(ink: &str, alpha: f64) -> String {
     if alpha < 1.0 { format!(" {ink}-opacity=\"{alpha}\"") } else { String::new() }
 }

@@ -7,7 +7,7 @@ use plotters::element::{Circle, DynElement, EmptyElement, IntoDynElement as _, P
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
 
-use crate::backend::{PlotResult, Svg, SvgGroup, UNITS, units};
+use crate::backend::{PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::fonts::{FAMILY, text_width};
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
@@ -104,7 +104,7 @@ impl TextLine {
     pub(crate) fn style(&self) -> TextStyle<'static> {
         let weight = if self.bold { FontStyle::Bold } else { FontStyle::Normal };
         let turn = if self.turned { FontTransform::Rotate270 } else { FontTransform::None };
-        let font = FontDesc::new(FontFamily::Name(FAMILY), self.size * UNITS, weight).transform(turn);
+        let font = FontDesc::new(FontFamily::Name(FAMILY), self.size * UNITS_PER_POINT, weight).transform(turn);
         font.color(&self.colour).pos(Pos::new(self.anchor, VPos::Center))
     }
 }

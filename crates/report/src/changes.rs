@@ -22,7 +22,7 @@ pub(crate) fn colour(text: &str) -> Option<RGBColor> {
 
 impl StyleChanges {
     /// Replacement of a colour, or the colour itself.
-    pub(crate) fn of(&self, colour: RGBColor) -> RGBColor {
+    pub(crate) fn replacement(&self, colour: RGBColor) -> RGBColor {
         self.colours.iter().find(|(old, _)| *old == colour).map_or(colour, |(_, new)| *new)
     }
 

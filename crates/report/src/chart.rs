@@ -9,7 +9,7 @@ use plotters::series::LineSeries;
 use plotters::style::{Color as _, RGBAColor};
 
 use crate::axis::Axis;
-use crate::backend::{Bounds, PlotResult, Svg, SvgGroup, UNITS, units};
+use crate::backend::{Bounds, PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
 use crate::palette::{INK, Look, PAPER};
@@ -46,7 +46,7 @@ impl Chart {
     pub(crate) fn new(chart: &SvgChart, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
         let (across, down) = chart.plotting_area().get_pixel_range();
         let [left, right, top, bottom] =
-            [across.start, across.end - 1, down.start, down.end - 1].map(|place| f64::from(place) / UNITS);
+            [across.start, across.end - 1, down.start, down.end - 1].map(|place| f64::from(place) / UNITS_PER_POINT);
         let rect = Rect { x: left, y: top, w: right - left, h: bottom - top };
         let wide = chart.plotting_area().strip_coord_spec().margin(-BEYOND, -BEYOND, -BEYOND, -BEYOND);
         Self { data: wide.apply_coord_spec(chart.as_coord_spec().clone()), canvas, rect, x, y }
@@ -67,13 +67,13 @@ impl Chart {
 
     /// Horizontal page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn page_x(&self, x: f64) -> Option<f64> {
-        let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(x, self.y.ends().0)).0) / UNITS_PER_POINT;
         self.x.is_plottable(x).then(at)
     }
 
     /// Vertical page coordinate of a value, points; `None` if it is not on the scale.
     pub(crate) fn page_y(&self, y: f64) -> Option<f64> {
-        let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS;
+        let at = || f64::from(self.data.map_coordinate(&(self.x.ends().0, y)).1) / UNITS_PER_POINT;
         self.y.is_plottable(y).then(at)
     }
 
@@ -85,7 +85,7 @@ impl Chart {
     /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end.
     pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
-        (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS, f64::from(up) / UNITS))
+        (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS_PER_POINT, f64::from(up) / UNITS_PER_POINT))
     }
 
     /// Place of a pair of values inside the frame.

@@ -71,7 +71,7 @@ impl Drawing {
     fn encode(&self, pixmap: Pixmap) -> Result<Vec<u8>, ReportError> {
         let (width, height) = (pixmap.width(), pixmap.height());
         // The page is opaque, so the alpha channel is constant and the colours are not premultiplied.
-        let IndexedImage { palette, pixels } = IndexedImage::of(&pixmap.take());
+        let IndexedImage { palette, pixels } = IndexedImage::from_rgba(&pixmap.take());
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width, height);
         encoder.set_color(png::ColorType::Indexed);

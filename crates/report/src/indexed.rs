@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 /// Maximum number of colours of a palette with one-byte indices.
 const MAX_COLOURS: usize = 256;
 
-/// Number of colours that are never merged: those of the largest areas.
+/// Number of colours that are never merged: the colours of the largest areas.
 const FLAT: usize = 128;
 
 /// Opaque image of few colours.
@@ -25,11 +25,10 @@ impl IndexedImage {
     /// Image of opaque RGBA pixels, four bytes each; the alpha byte is ignored.
     ///
     /// In addition to the colours of large areas, the palette holds the first colour of each level, on the finest of
-    /// 256, 128, …, 4 levels per channel that leaves few enough; all others become the nearest of these colours.
-    pub fn of(rgba: &[u8]) -> Self {
+    /// 256, 128, …, 4 levels per channel that leaves few enough; any other colour becomes the nearest of these.
+    pub fn from_rgba(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
-        let runs =
-            || pixels.chunk_by(|pixel, next| pixel == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
+        let runs = || pixels.chunk_by(|p, next| p == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
         // An area has neighbours of the same colour, an edge has few.
         let mut areas: HashMap<Rgb, usize> = HashMap::new();
         runs().for_each(|(colour, length)| *areas.entry(colour).or_default() += length - 1);
@@ -44,7 +43,7 @@ impl IndexedImage {
     }
 }
 
-/// The flat colours, and of the others the first on each of some levels per channel.
+/// The flat colours, and the first other colour on each of `levels` levels per channel.
 fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     let level = |channel: u8| (u32::from(channel) * levels + 127) / 255;
     let mut levels_seen = HashSet::new();
@@ -56,8 +55,7 @@ fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
 /// Index of the nearest colour.
 fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
     let distance = |candidate: &Rgb| (0..3).map(|k| u32::from(candidate[k].abs_diff(colour[k])).pow(2)).sum::<u32>();
-    let place =
-        palette.iter().enumerate().min_by_key(|(_, candidate)| distance(candidate)).map_or(0, |(place, _)| place);
+    let place = palette.iter().enumerate().min_by_key(|(_, colour)| distance(colour)).map_or(0, |(place, _)| place);
     place as u8
 }
 
@@ -67,7 +65,7 @@ mod tests {
 
     #[test]
     fn few_colours_are_kept_as_they_are() {
-        let image = IndexedImage::of(&[9, 9, 9, 255, 255, 0, 0, 255, 255, 0, 0, 255]);
+        let image = IndexedImage::from_rgba(&[9, 9, 9, 255, 255, 0, 0, 255, 255, 0, 0, 255]);
         assert_eq!(image, IndexedImage { palette: vec![255, 0, 0, 9, 9, 9], pixels: vec![1, 0, 0] });
     }
 
@@ -77,14 +75,14 @@ mod tests {
         let ramp = (0..=u16::MAX).flat_map(|k| [(k >> 8) as u8, (k & 255) as u8, 77, 255]);
         let areas = [[201, 33, 77, 255], [201, 34, 77, 255]].map(|pixel| pixel.repeat(1000)).concat();
         let rgba: Vec<u8> = ramp.chain(areas).collect();
-        let IndexedImage { palette, pixels } = IndexedImage::of(&rgba);
+        let IndexedImage { palette, pixels } = IndexedImage::from_rgba(&rgba);
         assert!(
             palette.len() <= 3 * MAX_COLOURS && palette[..6] == [201, 33, 77, 201, 34, 77],
             "{}",
             palette.len() / 3
         );
         let of = |place: &u8| &palette[3 * usize::from(*place)..][..3];
-        let apart = |(place, own): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(own[k])).max();
+        let apart = |(place, pixel): (&u8, &[u8])| (0..3).map(|k| of(place)[k].abs_diff(pixel[k])).max();
         let farthest = pixels.iter().zip(rgba.chunks_exact(4)).filter_map(apart).max();
         // Eight levels per channel, each with its first colour.
         assert!(farthest.is_some_and(|apart| apart <= 36), "{farthest:?}");

@@ -14,7 +14,7 @@ pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<Str
 }
 
 /// Words of a text; a unit in brackets is one word.
-fn words(text: &str) -> Vec<String> {
+fn unbroken_parts(text: &str) -> Vec<String> {
     let mut parts: Vec<String> = Vec::new();
     // Not at every white space: a no-break space keeps a symbol and its value together.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -30,7 +30,7 @@ fn words(text: &str) -> Vec<String> {
 /// with the word before them. A longer word is broken, after a mark such as a dot if it has one.
 pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    let mut parts = words(text).into_iter().peekable();
+    let mut parts = unbroken_parts(text).into_iter().peekable();
     while let Some(word) = parts.next() {
         let unit = parts.peek().filter(|next| next.starts_with(['[', '%']));
         let with_unit = unit.map(|unit| format!("{word} {unit}")).filter(|both| text_width(both, size, bold) <= width);
@@ -49,16 +49,16 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
 
 /// Word in several lines if it is too long for one. A word stays whole if not even a letter fits.
 fn broken(word: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
-    let (mut lines, mut rest) = (Vec::new(), word);
-    while text_width(rest, size, bold) > width {
-        let ends = rest.char_indices().map(|(start, letter)| start + letter.len_utf8());
-        let fitting: Vec<usize> = ends.take_while(|end| text_width(&rest[..*end], size, bold) <= width).collect();
-        let after_mark = fitting.iter().rev().find(|end| rest[..**end].ends_with(['.', '-', '_', '/']));
+    let (mut lines, mut remaining) = (Vec::new(), word);
+    while text_width(remaining, size, bold) > width {
+        let ends = remaining.char_indices().map(|(start, letter)| start + letter.len_utf8());
+        let fitting: Vec<usize> = ends.take_while(|end| text_width(&remaining[..*end], size, bold) <= width).collect();
+        let after_mark = fitting.iter().rev().find(|end| remaining[..**end].ends_with(['.', '-', '_', '/']));
         let Some(end) = after_mark.or(fitting.last()) else { break };
-        lines.push(rest[..*end].to_owned());
-        rest = &rest[*end..];
+        lines.push(remaining[..*end].to_owned());
+        remaining = &remaining[*end..];
     }
-    lines.push(rest.to_owned());
+    lines.push(remaining.to_owned());
     lines
 }
 

@@ -25,8 +25,8 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
-        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.into(),
-        Some(rest) => format!("−{rest}"),
+        Some(digits) if digits.bytes().all(|b| matches!(b, b'0' | b'.')) => digits.into(),
+        Some(digits) => format!("−{digits}"),
         None => text,
     }
 }

@@ -137,7 +137,7 @@ impl Page {
     }
 }
 
-/// Level of a headline, 1 for that of the page.
+/// Level of a headline, 1 for the title of the page.
 fn level(block: &str) -> Option<usize> {
     let level = block.len() - block.trim_start_matches('#').len();
     (level > 0 && block[level..].starts_with(' ')).then_some(level)
@@ -168,7 +168,7 @@ mod tests {
                         *Figure 2. K is 0.1. a\\*b*\n\n## Numbers\n\n- one\n- two\n![none]\n";
         assert_eq!(page.to_markdown(), markdown);
         assert_eq!(page.folded(), ["Numbers"]);
-        assert_eq!(page.figures().iter().map(|own| own.stem.as_str()).collect::<Vec<_>>(), ["last", "fit"]);
+        assert_eq!(page.figures().iter().map(|figure| figure.stem.as_str()).collect::<Vec<_>>(), ["last", "fit"]);
     }
 
     #[test]

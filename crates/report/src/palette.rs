@@ -1,5 +1,5 @@
 //! Looks of origins: one colour, marker and dash for every identification method, the record, the truth and the bound,
-//! the same in every figure. The colours are those of Okabe & Ito (2008), "Color universal design", distinguishable
+//! the same in every figure. Colours: Okabe & Ito (2008), "Color universal design", distinguishable
 //! with any common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat
 //! the distinction for prints in grey.
 
@@ -177,13 +177,13 @@ const LOOKS: u64 = 60;
 
 const BROWN: RGBColor = RGBColor(0x66, 0x11, 0x00);
 
-/// Ids that have their own look, in the order of figures.
+/// Ids of the methods with a fixed look, in the order of figures.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
 /// Look of a variant: a shade of the colour of its method, a hollow marker and a separate dash; every external
-/// estimator has its own colour.
+/// estimator has another colour.
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
@@ -210,8 +210,8 @@ fn series_look(number: usize) -> Look {
     }
 }
 
-/// Look of a method; one outside the list has the same look in all figures: that of an external estimator, chosen by
-/// its name.
+/// Look of a method; a method outside the list has the look of an external estimator, chosen by its name, in all
+/// figures.
 fn method_look(id: &str) -> Look {
     // A trace and the rule that chooses a method are not in the list of methods, but are shown with them.
     match id {
@@ -219,7 +219,7 @@ fn method_look(id: &str) -> Look {
         "recommended" => return Look { hollow: true, ..Look::new(BROWN, Marker::Diamond, DASHED) },
         _ => {}
     }
-    if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
+    if let Some((_, look)) = METHODS.iter().find(|(method, _)| *method == id) {
         return *look;
     }
     // FNV-1a, because the standard hasher does not guarantee the same value in the next release.

@@ -8,7 +8,7 @@ use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::drawing::IntoDrawingArea as _;
 use plotters::style::text_anchor::HPos;
 
-use crate::axis::{Axis, MAX_TICKS};
+use crate::axis::{Axis, MAX_TICK_INTERVALS};
 use crate::backend::{PlotResult, Svg, units};
 use crate::canvas::{Canvas, Stroke, TextLine};
 use crate::chart::Chart;
@@ -159,7 +159,7 @@ impl Sheet {
     /// Row with its ticks, and with labels and title wrapped.
     fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
         let theme = &self.theme;
-        let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICKS);
+        let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICK_INTERVALS);
         let axis = theme
             .changes
             .limited(side.axis.clone(), &side.title)

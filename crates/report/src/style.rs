@@ -43,50 +43,50 @@ pub struct Style {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum StyleError {
     /// A size is out of its range.
-    #[error("{key} = {found}: expected a number from {} to {}", range[0], range[1])]
+    #[error("{key} = {value}: expected a number from {} to {}", range[0], range[1])]
     Size {
         /// Key of the size.
         key: &'static str,
-        /// Value found.
-        found: f64,
+        /// Given value.
+        value: f64,
         /// Minimum and maximum value.
         range: [f64; 2],
     },
     /// A name that has no colour.
-    #[error("[colours] {name}: nothing has this name; expected one of {known}")]
+    #[error("[colours] {name}: nothing has this name; expected one of {valid}")]
     Name {
-        /// Name found.
+        /// Given name.
         name: String,
         /// All valid names.
-        known: String,
+        valid: String,
     },
     /// A value that is not a colour.
-    #[error("[colours] {name} = \"{found}\": expected red, green and blue as in \"#0072B2\"")]
+    #[error("[colours] {name} = \"{value}\": expected red, green and blue as in \"#0072B2\"")]
     Colour {
         /// Key of the colour.
         name: String,
-        /// Value found.
-        found: String,
+        /// Given value.
+        value: String,
     },
     /// Two colours for two keys that share one.
     #[error(
-        "[colours] {name} = \"{found}\": it shares its colour with {other}, which is set to another one; set one of them"
+        "[colours] {name} = \"{value}\": it shares its colour with {other}, which is set to another one; set one of them"
     )]
     Shared {
         /// Key of the colour.
         name: String,
-        /// Value found.
-        found: String,
+        /// Given value.
+        value: String,
         /// Key that shares the colour.
         other: String,
     },
     /// Limits in the wrong order.
-    #[error("[limits] \"{title}\" = [{}, {}]: expected two numbers, the smaller one first", found[0], found[1])]
+    #[error("[limits] \"{title}\" = [{}, {}]: expected two numbers, the smaller one first", value[0], value[1])]
     Limits {
         /// Title of the axis.
         title: String,
-        /// Value found.
-        found: [f64; 2],
+        /// Given value.
+        value: [f64; 2],
     },
 }
 
@@ -112,7 +112,7 @@ impl Style {
     /// Fails if a value is out of its range, or if a key is unknown.
     pub fn apply_to(&self, theme: Theme) -> Result<Theme, StyleError> {
         let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
-            Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),
+            Some(value) if !(range[0]..=range[1]).contains(&value) => Err(StyleError::Size { key, value, range }),
             value => Ok(value.map_or(1.0, |value| value / usual)),
         };
         let font = share("font-size-pt", self.font_size_pt, theme.label_font, FONT)?;
@@ -139,14 +139,14 @@ impl Style {
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(id, _)| id == name) else {
                 let ids: Vec<&str> = coloured().map(|(id, _)| id).collect();
-                return Err(StyleError::Name { name: name.clone(), known: ids.join(", ") });
+                return Err(StyleError::Name { name: name.clone(), valid: ids.join(", ") });
             };
-            let wrong = || StyleError::Colour { name: name.clone(), found: text.clone() };
+            let wrong = || StyleError::Colour { name: name.clone(), value: text.clone() };
             let new = colour(text).ok_or_else(wrong)?;
             match changes.iter().find(|(_, other, _)| *other == old) {
                 Some((other, _, another)) if *another != new => {
-                    let (name, found, other) = (name.clone(), text.clone(), (*other).to_owned());
-                    return Err(StyleError::Shared { name, found, other });
+                    let (name, value, other) = (name.clone(), text.clone(), (*other).to_owned());
+                    return Err(StyleError::Shared { name, value, other });
                 }
                 Some(_) => {}
                 None => changes.push((name, old, new)),
@@ -158,7 +158,7 @@ impl Style {
     fn limits(&self) -> Result<&BTreeMap<String, [f64; 2]>, StyleError> {
         let wrong = self.limits.iter().find(|(_, [lo, hi])| !(lo.is_finite() && hi.is_finite() && lo < hi));
         match wrong {
-            Some((title, ends)) => Err(StyleError::Limits { title: title.clone(), found: *ends }),
+            Some((title, ends)) => Err(StyleError::Limits { title: title.clone(), value: *ends }),
             None => Ok(&self.limits),
         }
     }
@@ -191,30 +191,30 @@ mod tests {
             limits: [(String::from("rudder δ [°]"), [-90.0, 90.0])].into(),
             ..Style::default()
         };
-        let own = drawn(&style);
-        assert!(own.contains("font-size=\"300") && own.contains("stroke-width=\"54\""), "{own}");
-        assert!(own.contains("=\"#0072B2\"") && own.contains("=\"#010203\"") && !own.contains("=\"#D55E00\""));
-        assert!(own.contains("&quot;#D55E00&quot;"), "text is left alone");
-        assert!(own.contains("\n−60\n") || own.contains("\n−50\n") || own.contains("\n−80\n"), "{own}");
+        let styled = drawn(&style);
+        assert!(styled.contains("font-size=\"300") && styled.contains("stroke-width=\"54\""), "{styled}");
+        assert!(styled.contains("=\"#0072B2\"") && styled.contains("=\"#010203\"") && !styled.contains("=\"#D55E00\""));
+        assert!(styled.contains("&quot;#D55E00&quot;"), "text is left alone");
+        assert!(styled.contains("\n−60\n") || styled.contains("\n−50\n") || styled.contains("\n−80\n"), "{styled}");
     }
 
     #[test]
     fn what_is_wrong_is_named() {
         let of =
             |name: &str, colour: &str| Style { colours: [(name.into(), colour.into())].into(), ..Style::default() };
-        let said = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
+        let text = |style: Style| style.apply_to(Theme::screen()).unwrap_err().to_string();
         assert!(
-            said(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
+            text(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
         );
         for wrong in ["#00", "red", "#00000g", "#ééé"] {
-            assert!(said(of("ink", wrong)).contains(wrong), "{wrong}");
+            assert!(text(of("ink", wrong)).contains(wrong), "{wrong}");
         }
         let mut two = of("heading", "#000000");
         two.colours.insert("integral-least-squares".into(), "#FFFFFF".into());
-        assert!(said(two).contains("shares its colour with heading"));
+        assert!(text(two).contains("shares its colour with heading"));
         let size = Style { font_size_pt: Some(100.0), ..Style::default() };
-        assert_eq!(said(size), "font-size-pt = 100: expected a number from 4 to 30");
+        assert_eq!(text(size), "font-size-pt = 100: expected a number from 4 to 30");
         let limits = Style { limits: [("x".into(), [2.0, 1.0])].into(), ..Style::default() };
-        assert_eq!(said(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
+        assert_eq!(text(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
     }
 }

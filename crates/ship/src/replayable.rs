@@ -7,7 +7,7 @@ use estimation::number::Real;
 use crate::dynamics::{Dynamics, Input, Regressor};
 use crate::number::Tangent;
 
-/// Time constants that steps must resolve: one for all times, and further ones for time spans.
+/// Time constants that steps must resolve: a global time constant, and time constants of time spans.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeConstants {
     always: f64,

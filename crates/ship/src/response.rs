@@ -14,7 +14,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{ActsOn, BaseFactors, Effect, EffectReal, OperatingPoint, Parameter, SwayCoupling};
+use crate::effects::{BaseFactors, Effect, EffectReal, EffectTarget, OperatingPoint, Parameter, SwayCoupling};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -34,7 +34,7 @@ pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
-    acts_on: ActsOn,
+    acts_on: EffectTarget,
 }
 
 impl Place {
@@ -86,7 +86,7 @@ impl ResponseModel {
                 with_memory = index + 1;
             }
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
-            if f64::action(effect.as_ref()).sway_coupling(&neutral).is_some() {
+            if f64::effect_equations(effect.as_ref()).sway_coupling(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
@@ -128,7 +128,7 @@ impl ResponseModel {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
             let place = self.places[index];
-            let effect = R::action(self.effects[index].as_ref());
+            let effect = R::effect_equations(self.effects[index].as_ref());
             Some((effect.sway_coupling(&parameters[place.parameters()])?, place.states.0))
         });
         Response { model: self, parameters, coupling }
@@ -208,7 +208,7 @@ impl<R: EffectReal> Response<R> {
     fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
         for (effect, p, place) in self.effects().filter(|(.., place)| place.acts_on.rudder) {
-            rudder = R::action(effect).rudder(p, &state[place.states()], rudder);
+            rudder = R::effect_equations(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
         let mut scale = BaseFactors::unity();
@@ -216,12 +216,12 @@ impl<R: EffectReal> Response<R> {
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
             if place.acts_on.scale {
-                let factor = R::action(effect).base_factors(p, z, &now);
+                let factor = R::effect_equations(effect).base_factors(p, z, &now);
                 scale.damping = scale.damping * factor.damping;
                 scale.gain = scale.gain * factor.gain;
             }
             if place.acts_on.moment {
-                acceleration = acceleration + R::action(effect).yaw_acceleration(p, z, &now);
+                acceleration = acceleration + R::effect_equations(effect).yaw_acceleration(p, z, &now);
             }
         }
         Instant { rudder, scale, acceleration }
@@ -264,15 +264,15 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
     }
 
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the memory of the
-    /// effects is that of a constant rudder angle.
+    /// effects belongs to a constant rudder angle.
     fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
         for (effect, p, place) in self.effects() {
             let z = &mut state[place.states()];
-            R::action(effect).approach(p, &now, z);
-            now.rudder = R::action(effect).rudder(p, z, now.rudder);
+            R::effect_equations(effect).approach(p, &now, z);
+            now.rudder = R::effect_equations(effect).rudder(p, z, now.rudder);
         }
         if let Some((coupling, s)) = self.coupling {
             // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces it.
@@ -324,10 +324,10 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
             for (effect, p, place) in self.effects().take(self.model.with_memory) {
                 let z = &state[place.states()];
                 if !z.is_empty() {
-                    R::action(effect).rates(p, z, &now, before, &mut rate[place.states()]);
+                    R::effect_equations(effect).rates(p, z, &now, before, &mut rate[place.states()]);
                 }
                 if place.acts_on.rudder {
-                    before = R::action(effect).rudder(p, z, before);
+                    before = R::effect_equations(effect).rudder(p, z, before);
                 }
             }
             if let Some((_, s)) = self.coupling {
@@ -343,8 +343,8 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         let mut before = input.rudder;
         for (effect, p, place) in self.effects().take(self.model.with_memory) {
             let z = &mut state[place.states()];
-            R::action(effect).update_memory(p, z, before);
-            before = R::action(effect).rudder(p, z, before);
+            R::effect_equations(effect).update_memory(p, z, before);
+            before = R::effect_equations(effect).rudder(p, z, before);
         }
     }
 
@@ -361,7 +361,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
     }
 
     fn dead_time(&self) -> R {
-        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::action(effect).dead_time(p))
+        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::effect_equations(effect).dead_time(p))
     }
 
     /// Fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.

@@ -5,7 +5,7 @@
 use ship::narrow_band::NarrowBand;
 use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 
-use crate::error::{Check, Expected, SpecificationError};
+use crate::error::{Check, Requirement, SpecificationError};
 use crate::limits::MAX_STEPS;
 use crate::propagate::{ClosedForm, exposed};
 use crate::simulated_ship::Solver;
@@ -56,7 +56,7 @@ impl Simulation {
         if steps <= most {
             return Ok(());
         }
-        Err(SpecificationError { key, value, expected: Expected::Steps { estimate: steps, most } })
+        Err(SpecificationError { key, value, expected: Requirement::Steps { estimate: steps, most } })
     }
 
     /// Parts of the manoeuvre, up to `count` steps.

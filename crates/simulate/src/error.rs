@@ -12,7 +12,7 @@ use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
 /// Requirement on a value in a specification: its sign, its range or its presence.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Expected {
+pub enum Requirement {
     /// Finite number.
     Finite,
     /// Finite number above zero.
@@ -36,41 +36,43 @@ pub enum Expected {
     },
     /// Number of an execute, up to the number of the last execute.
     Execute(usize),
-    /// Key that depends on another key: value found, value expected, and advice.
-    Other([&'static str; 3]),
-    /// Value that depends on another value: value found, value expected, and advice.
-    Value([&'static str; 3]),
+    /// Presence that depends on another key: given value, expected value and advice.
+    OtherKey([&'static str; 3]),
+    /// Value that depends on another value: given value, expected value and advice.
+    OtherValue([&'static str; 3]),
 }
 
-impl fmt::Display for Expected {
+impl fmt::Display for Requirement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Finite => write!(f, "a finite number"),
             Self::Positive => write!(f, "a finite number above 0"),
             Self::NotNegative => write!(f, "a finite number, 0 or above"),
             Self::PositiveOrInfinite => write!(f, "a number above 0 (infinite is allowed)"),
-            Self::Between(low, high) => write!(f, "a number from {} to {}", shown(*low), shown(*high)),
-            Self::AtMost(limit) => write!(f, "at most {}", shown(*limit)),
+            Self::Between(low, high) => {
+                write!(f, "a number from {} to {}", numeral(*low), numeral(*high))
+            }
+            Self::AtMost(limit) => write!(f, "at most {}", numeral(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
             Self::Steps { estimate, most } => {
                 write!(f, "a run of at most {most:.0e} steps, but this one can take {estimate:.1e}")
             }
             Self::Execute(last) => write!(f, "at most {last}"),
-            Self::Other([_, expected, _]) | Self::Value([_, expected, _]) => f.write_str(expected),
+            Self::OtherKey([_, expected, _]) | Self::OtherValue([_, expected, _]) => f.write_str(expected),
         }
     }
 }
 
 /// Error of an invalid value of a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{key} is {}, expected {expected}", shown(*.value))]
+#[error("{key} is {}, expected {expected}", numeral(*.value))]
 pub struct SpecificationError {
     /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name if no scenario sets it.
     pub key: &'static str,
-    /// Value found, in the unit of its key; NaN if none was given.
+    /// Given value, in the unit of its key; NaN without a value.
     pub value: f64,
     /// Requirement, in the unit of its key.
-    pub expected: Expected,
+    pub expected: Requirement,
 }
 
 /// Tables of a scenario whose keys are all optional.
@@ -82,31 +84,31 @@ const WHOLE: [&str; 2] = ["sensor.heading-wander.", "sensor.heading-spikes."];
 impl SpecificationError {
     /// `true` if the presence of the key is the error, `false` if its value is.
     pub fn is_about_key(&self) -> bool {
-        matches!(self.expected, Expected::Other(_)) || self.key == "vessel.dead_time"
+        matches!(self.expected, Requirement::OtherKey(_)) || self.key == "vessel.dead_time"
     }
 
-    /// Message in the units of a scenario: value found, value expected, and advice.
+    /// Message in the units of a scenario: given value, expected value and advice.
     pub fn message_parts(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
         let problem = match expected {
-            Expected::Other(message) | Expected::Value(message) => return message.map(str::to_owned),
-            Expected::Duration => format!("`{key}` is missing"),
-            Expected::Execute(last) => {
-                format!("`{key}` is {}, but the manoeuvre ends after execute {last}", shown(value))
+            Requirement::OtherKey(message) | Requirement::OtherValue(message) => return message.map(str::to_owned),
+            Requirement::Duration => format!("`{key}` is missing"),
+            Requirement::Execute(last) => {
+                format!("`{key}` is {}, but the manoeuvre ends after execute {last}", numeral(value))
             }
             _ if key == "vessel.dead_time" => {
                 format!("the dead times of all effects add up to {} s", ShortNumber(value))
             }
-            _ => format!("`{key}` is {}", shown(value)),
+            _ => format!("`{key}` is {}", numeral(value)),
         };
         let requirement = match expected {
-            Expected::Finite => "expected a finite number".to_owned(),
-            Expected::Positive if value.is_finite() => "expected a number above 0".to_owned(),
-            Expected::NotNegative if value.is_finite() => "expected a number, 0 or above".to_owned(),
-            Expected::PositiveOrInfinite if key == "recording.assumed-rudder-rate-deg-s" => {
+            Requirement::Finite => "expected a finite number".to_owned(),
+            Requirement::Positive if value.is_finite() => "expected a number above 0".to_owned(),
+            Requirement::NotNegative if value.is_finite() => "expected a number, 0 or above".to_owned(),
+            Requirement::PositiveOrInfinite if key == "recording.assumed-rudder-rate-deg-s" => {
                 "expected a number above 0, or inf for a rudder that jumps".to_owned()
             }
-            Expected::PositiveOrInfinite => "expected a number above 0, or inf for no limit".to_owned(),
+            Requirement::PositiveOrInfinite => "expected a number above 0, or inf for no limit".to_owned(),
             _ => format!("expected {expected}"),
         };
         [problem, requirement, self.advice()]
@@ -115,25 +117,25 @@ impl SpecificationError {
     fn advice(&self) -> String {
         let advice = match (self.key, self.expected) {
             ("vessel.dead_time", _) => "give dead times of 0 s or more: a rudder does not act before it moves",
-            ("recording.duration-s", Expected::Duration) => {
+            ("recording.duration-s", Requirement::Duration) => {
                 "add `duration-s = …` (seconds), or let `executes` end the zig-zag"
             }
-            (_, Expected::Execute(_)) => "start the record earlier, or leave the key out to record from the start",
-            (_, Expected::AtMost(limit)) if limit == MAX_TIME_S => "give a time in seconds",
-            (key, Expected::AtMost(limit)) if key.ends_with("duration-s") => {
+            (_, Requirement::Execute(_)) => "start the record earlier, or leave the key out to record from the start",
+            (_, Requirement::AtMost(limit)) if limit == MAX_TIME_S => "give a time in seconds",
+            (key, Requirement::AtMost(limit)) if key.ends_with("duration-s") => {
                 let periods = (MAX_ROWS - 1) as f64;
-                let sampling_s = shown(limit / periods);
+                let sampling_s = numeral(limit / periods);
                 return format!(
                     "record less, or more rarely: with `sampling-s` = {sampling_s} that limit is {periods} rows"
                 );
             }
-            (key, Expected::AtMost(_)) if key.ends_with("rudder-deg") => {
+            (key, Requirement::AtMost(_)) if key.ends_with("rudder-deg") => {
                 "give less rudder, or set `steering-gear.maximum-deg` if the rudder of this ship goes further"
             }
-            ("manoeuvre.zig-zag.executes" | "recording.after-execute", Expected::Steps { .. }) => {
+            ("manoeuvre.zig-zag.executes" | "recording.after-execute", Requirement::Steps { .. }) => {
                 "wait for fewer executes (each counts with the longest wait), or end the zig-zag by `duration-s`"
             }
-            (_, Expected::Steps { .. }) => "make the run shorter",
+            (_, Requirement::Steps { .. }) => "make the run shorter",
             ("recording.sampling-s", _) => "give the time between two rows of the record, in seconds",
             ("recording.after-execute", _) => {
                 "count the executes from 1, or leave the key out to record from the start"
@@ -186,14 +188,14 @@ pub enum SimulateError {
         made: usize,
     },
     /// Run that was stopped because it exceeded a limit.
-    #[error("the run was stopped at {time:.1} s, because it took more than {most} {what}")]
+    #[error("the run was stopped at {time:.1} s, because it took more than {limit} {quantity}")]
     TooLong {
         /// Time reached, s.
         time: f64,
         /// Exceeded quantity: steps, executes or rows.
-        what: &'static str,
-        /// Limit.
-        most: usize,
+        quantity: &'static str,
+        /// Maximum of that quantity.
+        limit: usize,
     },
     /// Rows that are not a valid record.
     #[error(transparent)]
@@ -204,7 +206,7 @@ pub enum SimulateError {
 pub(crate) type Check = Result<(), SpecificationError>;
 
 /// Number as written in the scenario, without the rounding errors of the conversion to radians and back.
-pub(crate) fn shown(value: f64) -> ShortNumber {
+pub(crate) fn numeral(value: f64) -> ShortNumber {
     ShortNumber::rounded(value, 14)
 }
 
@@ -214,30 +216,30 @@ fn unit(key: &str) -> f64 {
 }
 
 /// Error that no single value causes; always fails.
-pub(crate) fn refuse(key: &'static str, expected: Expected) -> Check {
+pub(crate) fn refuse(key: &'static str, expected: Requirement) -> Check {
     Err(SpecificationError { key, value: f64::NAN, expected })
 }
 
 /// Check of a value (SI, rad); fails if `holds` is false.
-fn check(holds: bool, key: &'static str, value: f64, expected: Expected) -> Check {
+fn check(holds: bool, key: &'static str, value: f64, expected: Requirement) -> Check {
     if holds {
         return Ok(());
     }
     let unit = unit(key);
     let expected = match expected {
-        Expected::Between(low, high) => Expected::Between(low / unit, high / unit),
-        Expected::AtMost(limit) => Expected::AtMost(limit / unit),
+        Requirement::Between(low, high) => Requirement::Between(low / unit, high / unit),
+        Requirement::AtMost(limit) => Requirement::AtMost(limit / unit),
         other => other,
     };
     Err(SpecificationError { key, value: value / unit, expected })
 }
 
 pub(crate) fn check_finite(key: &'static str, value: f64) -> Check {
-    check(value.is_finite(), key, value, Expected::Finite)
+    check(value.is_finite(), key, value, Requirement::Finite)
 }
 
 pub(crate) fn check_positive(key: &'static str, value: f64) -> Check {
-    check(value.is_finite() && value > 0.0, key, value, Expected::Positive)
+    check(value.is_finite() && value > 0.0, key, value, Requirement::Positive)
 }
 
 /// Check of a count; fails outside the range from 1 to `most`.
@@ -246,19 +248,19 @@ pub(crate) fn check_count(key: &'static str, value: usize, most: usize) -> Check
 }
 
 pub(crate) fn check_not_negative(key: &'static str, value: f64) -> Check {
-    check(value.is_finite() && value >= 0.0, key, value, Expected::NotNegative)
+    check(value.is_finite() && value >= 0.0, key, value, Requirement::NotNegative)
 }
 
 pub(crate) fn check_positive_or_infinite(key: &'static str, value: f64) -> Check {
-    check(value > 0.0, key, value, Expected::PositiveOrInfinite)
+    check(value > 0.0, key, value, Requirement::PositiveOrInfinite)
 }
 
 pub(crate) fn check_between(key: &'static str, value: f64, low: f64, high: f64) -> Check {
-    check(value >= low && value <= high, key, value, Expected::Between(low, high))
+    check(value >= low && value <= high, key, value, Requirement::Between(low, high))
 }
 
 pub(crate) fn check_at_most(key: &'static str, value: f64, limit: f64) -> Check {
-    check(value <= limit, key, value, Expected::AtMost(limit))
+    check(value <= limit, key, value, Requirement::AtMost(limit))
 }
 
 /// Check of a duration, s; fails if it is negative or longer than [`MAX_TIME_S`](crate::limits::MAX_TIME_S).

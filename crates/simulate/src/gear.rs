@@ -91,7 +91,7 @@ impl SteeringGear {
     }
 
     /// Gear with missing settings taken from a ship, if its source gives them.
-    pub fn with_defaults_of(self, ship: &Ship) -> Self {
+    pub fn with_ship_defaults(self, ship: &Ship) -> Self {
         Self {
             rate: self.rate.or(ship.rudder_rate),
             maximum: self.maximum.or(ship.largest_rudder).or(Some(from_deg(Self::MAX_DEG))),

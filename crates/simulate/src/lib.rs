@@ -66,7 +66,7 @@ pub mod stream;
 
 pub use assumption::Assumption;
 pub use disturbance::Disturbances;
-pub use error::{Expected, SimulateError, SpecificationError};
+pub use error::{Requirement, SimulateError, SpecificationError};
 pub use gear::SteeringGear;
 pub use helm::{HelmOrder, Helmsman};
 pub use prepared::PreparedSimulation;

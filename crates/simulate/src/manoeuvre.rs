@@ -2,7 +2,7 @@
 
 use trial::manoeuvre::Manoeuvre;
 
-use crate::error::{self, Check, Expected};
+use crate::error::{self, Check, Requirement};
 use crate::limits::MAX_EXECUTES;
 
 /// Check of every value of a manoeuvre; fails with the first invalid value.
@@ -15,7 +15,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
         Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
             return error::refuse(
                 "manoeuvre.zig-zag.duration-s",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
                     "expected one end of the manoeuvre",
                     "leave out `executes` or `duration-s`",
@@ -29,7 +29,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
         Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
             return error::refuse(
                 "manoeuvre.turning-circle.heading-change-deg",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
                     "expected one end of the manoeuvre",
                     "leave out `duration-s` or `heading-change-deg`",
@@ -39,7 +39,7 @@ pub(crate) fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
         Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
             return error::refuse(
                 "manoeuvre.turning-circle",
-                Expected::Other([
+                Requirement::OtherKey([
                     "nothing ends the turning circle",
                     "expected `duration-s` or `heading-change-deg` here",
                     "add a line `heading-change-deg = 540.0`, or one with `duration-s`",

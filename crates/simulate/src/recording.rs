@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use trial::DeclaredWeather;
 use trial::degrees::Degrees;
 
-use crate::error::{self, Check, Expected};
+use crate::error::{self, Check, Requirement};
 use crate::helm::{MAX_PERIOD_S, MIN_PERIOD_S};
 use crate::limits::{MAX_EXECUTES, MAX_ROWS};
 use crate::sample::Sample;
@@ -90,7 +90,7 @@ impl Recording {
             }
             (None, Some(_)) => error::refuse(
                 "recording.offset-s",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`recording.offset-s` counts from an execute, and `after-execute` is missing",
                     "expected `after-execute` as well",
                     "add `after-execute = 1` for the first execute, or leave `offset-s` out",
@@ -105,7 +105,7 @@ impl Recording {
             }
             (RudderSource::Orders, None) => error::refuse(
                 "recording.rudder",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`recording.rudder` is \"orders\", and the assumed rudder rate is missing",
                     "expected `assumed-rudder-rate-deg-s` as well",
                     "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
@@ -113,7 +113,7 @@ impl Recording {
             ),
             (RudderSource::Feedback, Some(_)) => error::refuse(
                 "recording.assumed-rudder-rate-deg-s",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`recording` has an assumed rate, but the rudder is recorded",
                     "expected a rate with `rudder = \"orders\"` only",
                     "add `rudder = \"orders\"`, or leave the rate out",

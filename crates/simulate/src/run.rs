@@ -127,7 +127,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 if let Some(order) = self.helm.act(t) {
                     self.execute(t, order);
                     if self.executes.len() > MAX_EXECUTES {
-                        return Err(SimulateError::TooLong { time: t, what: "executes", most: MAX_EXECUTES });
+                        return Err(SimulateError::TooLong { time: t, quantity: "executes", limit: MAX_EXECUTES });
                     }
                     return Ok(RunEvent::Executed);
                 }
@@ -191,7 +191,7 @@ impl<'a, P: Propagator> Run<'a, P> {
             // A travel of zero length counts, too, so that the loop always ends.
             self.steps += 1;
             if self.steps > MAX_STEPS {
-                return Err(SimulateError::TooLong { time: ship.time(), what: "steps", most: MAX_STEPS });
+                return Err(SimulateError::TooLong { time: ship.time(), quantity: "steps", limit: MAX_STEPS });
             }
             if ship.time() >= to {
                 return Ok(false);

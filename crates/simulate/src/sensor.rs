@@ -13,7 +13,7 @@ use trial::Noise;
 use trial::degrees::Degrees;
 
 use crate::disturbance::GaussMarkov;
-use crate::error::{self, Check, Expected};
+use crate::error::{self, Check, Requirement};
 use crate::limits::{MAX_ROWS, MAX_TIME_S};
 
 /// Instruments; a missing key means no error.
@@ -171,7 +171,7 @@ impl DropOut {
             (None, None) => Ok(()),
             _ => error::refuse(
                 "sensor.drop-out",
-                Expected::Other([
+                Requirement::OtherKey([
                     "`sensor.drop-out` has only one of `burst-probability` and `burst-mean-rows`",
                     "the two belong together",
                     "give both, or leave both out",

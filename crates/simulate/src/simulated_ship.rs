@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::narrow_band::NarrowBand;
-use ship::ships::Model;
+use ship::ships::ShipModel;
 use ship::{Dynamics, FirstOrder, Particulars, Response, Ship};
 
 /// Method of integration.
@@ -58,8 +58,8 @@ impl SimulatedShip {
     /// Ship of a ship of the registry, with its particulars.
     pub fn from_ship(ship: &Ship) -> Self {
         let simulated = match &ship.model {
-            Model::Response(response) => Self::from_response(response.clone()),
-            Model::Hull(hull) => Self::from_dynamics(Arc::clone(hull)),
+            ShipModel::Response(response) => Self::from_response(response.clone()),
+            ShipModel::Hull(hull) => Self::from_dynamics(Arc::clone(hull)),
         };
         Self { particulars: ship.particulars, ..simulated }
     }

@@ -13,7 +13,7 @@ use trial::{Conditions, Origin, Trial};
 
 use crate::display::HeadingDisplay;
 use crate::disturbance::Disturbances;
-use crate::error::{self, Check, Expected, SimulateError, SpecificationError};
+use crate::error::{self, Check, Requirement, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder, Helmsman};
 use crate::limits::MAX_ROWS;
@@ -202,7 +202,7 @@ impl Simulation {
                 error::check_at_most("recording.duration-s", duration, self.recording.max_duration())?
             }
             (Manoeuvre::ZigZag { executes: None, .. }, None) => {
-                error::refuse("recording.duration-s", Expected::Duration)?;
+                error::refuse("recording.duration-s", Requirement::Duration)?;
             }
             _ => {}
         }
@@ -213,13 +213,13 @@ impl Simulation {
             return Err(SpecificationError {
                 key: "recording.after-execute",
                 value,
-                expected: Expected::Execute(most),
+                expected: Requirement::Execute(most),
             });
         }
         if is_replay && self.recording.rudder == RudderSource::Orders {
             return error::refuse(
                 "recording.rudder",
-                Expected::Value([
+                Requirement::OtherValue([
                     "`recording.rudder` is \"orders\", but a replayed rudder has no orders",
                     "expected \"feedback\"",
                     "leave the key out",
@@ -323,7 +323,7 @@ impl Simulation {
             }
         }
         if rows.samples.len() > MAX_ROWS {
-            return Err(SimulateError::TooLong { time: run.time(), what: "rows", most: MAX_ROWS });
+            return Err(SimulateError::TooLong { time: run.time(), quantity: "rows", limit: MAX_ROWS });
         }
         Ok(self.look_back(rows, instruments, &run.finish()))
     }

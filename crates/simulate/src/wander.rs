@@ -17,7 +17,7 @@ pub(crate) struct WanderPoint {
     pub error: f64,
 }
 
-/// Reader of the compass; each has its own random stream.
+/// Reader of the compass, with a separate random stream.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum CompassReader {
     /// Recorder.

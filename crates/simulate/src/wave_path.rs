@@ -1,4 +1,4 @@
-//! Realisation of a narrow-band wave heading, at any non-decreasing times. It is sampled on a grid of its own and
+//! Realisation of a narrow-band wave heading, at any non-decreasing times. It is sampled on a separate grid and
 //! interpolated by the cubic Hermite polynomial of ξ and ξ', so two readers of one stream obtain identical waves at any
 //! sampling.
 

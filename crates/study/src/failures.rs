@@ -27,5 +27,5 @@ pub fn fail(failure: &Failure) -> u8 {
         Ok(document) if is_for_programs() => drop(writeln!(std::io::stderr().lock(), "{document}")),
         _ => screen::warn(&failure.to_string()),
     }
-    screen::exit_code(failure.blame)
+    screen::exit_code(failure.kind)
 }

@@ -11,7 +11,7 @@ use campaign::NoObserver;
 use campaign::collect::{collect, collect_shard};
 use campaign::disk::faults;
 use campaign::failure::Failure;
-use campaign::files::{BLOCK_TIMINGS, MANIFEST, ROWS, TIMINGS};
+use campaign::files::{MANIFEST_FILE, ROWS_FOLDER, TIMINGS_FILE, TIMINGS_FOLDER};
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
 use campaign::shard::Shard;
@@ -60,9 +60,9 @@ fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
         let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
         match path.is_dir() {
-            true if name == BLOCK_TIMINGS => {}
+            true if name == TIMINGS_FOLDER => {}
             true => files.extend(content(&path)),
-            false if [TIMINGS, MANIFEST].contains(&name.as_str()) => {}
+            false if [TIMINGS_FILE, MANIFEST_FILE].contains(&name.as_str()) => {}
             false => files.push((PathBuf::from(name), fs::read(path).expect("a file"))),
         }
     }
@@ -156,7 +156,7 @@ fn no_fault_of_the_disk_loses_anything_of_shards() {
     let (study, shards) = (scenario(""), desk.path().join("shards"));
     for number in 1..=2 {
         ResultFolder::make(&shards)
-            .and_then(|folder| collect_shard(&study, Shard { number, of: 2 }, &folder, false, &NoObserver))
+            .and_then(|folder| collect_shard(&study, Shard { number, count: 2 }, &folder, false, &NoObserver))
             .unwrap_or_else(|failure| panic!("{failure}"));
     }
     assert!(fail_each(Some(&shards), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
@@ -168,9 +168,9 @@ fn no_fault_of_the_disk_loses_a_block() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let (study, begun) = (scenario(""), desk.path().join("begun"));
     ResultFolder::make(&begun)
-        .and_then(|folder| collect_shard(&study, Shard { number: 1, of: 2 }, &folder, false, &NoObserver))
+        .and_then(|folder| collect_shard(&study, Shard { number: 1, count: 2 }, &folder, false, &NoObserver))
         .unwrap_or_else(|failure| panic!("{failure}"));
-    let first = |folder: &Path| fs::read(folder.join(ROWS).join("0000-0000.parquet")).ok();
+    let first = |folder: &Path| fs::read(folder.join(ROWS_FOLDER).join("0000-0000.parquet")).ok();
     let bytes = first(&begun);
     assert!(bytes.is_some());
     let go_on = |folder: &Path| {

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use campaign::failure::{Blame, Failure};
+use campaign::failure::{Failure, FailureKind};
 
 use crate::{failures, screen};
 
@@ -21,7 +21,7 @@ pub fn install() {
     let handler = || {
         let first = !ASKED.swap(true, Ordering::SeqCst);
         if !(first && LISTENING.load(Ordering::SeqCst)) {
-            std::process::exit(i32::from(screen::exit_code(Blame::Interrupted)));
+            std::process::exit(i32::from(screen::exit_code(FailureKind::Interrupted)));
         }
     };
     let _ = ctrlc::set_handler(handler);

@@ -14,7 +14,7 @@ use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::failure::{Failure, FailureParts, OnPath};
 use campaign::identified_ship::RecordFacts;
-use campaign::outside_estimates::TRIALS;
+use campaign::outside_estimates::TRIALS_FILE;
 use campaign::scenario::name;
 
 /// File name extensions of records in a folder.
@@ -34,7 +34,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             continue;
         }
         // A folder of simulated records also holds a list and answers; only records have a file of true values.
-        let is_simulated = path.join(TRIALS).is_file();
+        let is_simulated = path.join(TRIALS_FILE).is_file();
         let is_record = |file: &PathBuf| {
             let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
             file.is_file()
@@ -42,8 +42,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
                 && (!is_simulated || file.with_extension("truth.json").is_file())
         };
         let entries = std::fs::read_dir(path).on("read", path)?;
-        let mut records: Vec<PathBuf> =
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
+        let mut records: Vec<PathBuf> = entries.filter_map(|file| Some(file.ok()?.path())).filter(is_record).collect();
         records.sort();
         if records.is_empty() {
             let endings = ENDINGS.join(", .");
@@ -198,7 +197,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
         None => Ok(None),
         Some(TimePoint::Seconds(seconds)) => Ok(Some(*seconds)),
         Some(TimePoint::Clock(stamp, text)) => {
-            let time = log.clock.and_then(|clock| clock.time_of(stamp));
+            let time = log.clock.and_then(|clock| clock.record_time(stamp));
             time.map(Some).ok_or_else(|| {
                 Failure::in_file(
                     path,
@@ -237,7 +236,7 @@ pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
 }
 
 /// Message on a negative dead time, s: the rudder was logged late. It includes the remedy.
-pub fn rudder_logged_late(late: f64) -> String {
+pub fn late_rudder_message(late: f64) -> String {
     let late = ShortNumber::rounded(late, 2);
     format!(
         "the dead time is −{late} s, which no steering gear has: the rudder was logged {late} s late; write `late-s = {late}` under \
@@ -248,9 +247,9 @@ pub fn rudder_logged_late(late: f64) -> String {
 /// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
 /// record gives no validation.
 pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
-    let is_in = |records: &[Trial], trial: &Trial| records.iter().any(|other| file_of(other).1 == file_of(trial).1);
-    let twice =
-        trials.iter().enumerate().filter(|(number, trial)| is_in(&trials[..*number], trial)).map(|(_, trial)| trial);
+    let is_in =
+        |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
+    let twice = trials.iter().enumerate().filter(|(k, trial)| is_in(&trials[..*k], trial)).map(|(_, trial)| trial);
     let in_both = held_out.iter().filter(|trial| is_in(trials, trial));
     let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
     let idle = "used for identification and for validation; the error on it validates nothing";
@@ -281,11 +280,11 @@ pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
 
 /// A record as the source of warnings.
 pub fn source_of(trial: &Trial) -> WarningSource {
-    WarningSource::Record(file_of(trial).0.to_owned())
+    WarningSource::Record(file_and_hash(trial).0.to_owned())
 }
 
 /// Path and hash of a measured record.
-pub fn file_of(trial: &Trial) -> (&str, &str) {
+pub fn file_and_hash(trial: &Trial) -> (&str, &str) {
     match trial.origin() {
         Origin::Measured { file, sha256 } => (file, sha256),
         Origin::Simulated { scenario, .. } => (scenario, ""),

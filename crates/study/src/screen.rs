@@ -10,7 +10,7 @@ use report::Table;
 use report::printable::escaped;
 
 use crate::options::{CommonOptions, Format};
-use campaign::failure::{Blame, Failure};
+use campaign::failure::{Failure, FailureKind};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
@@ -23,7 +23,7 @@ fn put(text: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
     match writeln!(output, "{text}").and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::work(format!("failed to write to standard output: {error}")))
+            Err(Failure::execution(format!("failed to write to standard output: {error}")))
         }
         _ => Ok(()),
     }
@@ -117,11 +117,11 @@ pub fn escaped_lines(lines: &str) -> String {
 }
 
 /// Exit code of the program after a failure.
-pub fn exit_code(blame: Blame) -> u8 {
+pub fn exit_code(blame: FailureKind) -> u8 {
     match blame {
-        Blame::Work => 1,
-        Blame::Input => 2,
-        Blame::Interrupted => 130,
+        FailureKind::Work => 1,
+        FailureKind::Input => 2,
+        FailureKind::Interrupted => 130,
     }
 }
 

@@ -32,7 +32,7 @@ pub fn start(common: &CommonOptions) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()
-        .map_err(|error| Failure::work(format!("failed to start {threads} threads: {error}")))
+        .map_err(|error| Failure::execution(format!("failed to start {threads} threads: {error}")))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use ship::{Regressor, Response};
 use trial::{Channel, Trial};
 
-use crate::average::{Average, AveragedModel};
+use crate::average::{AveragedModel, ModelAverage};
 use crate::base::Base;
 use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, initial_states, replay_base};
@@ -27,9 +27,9 @@ use crate::location::locate;
 use crate::model::Term;
 use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
-use crate::remainder::{Innovations, Remainder, innovations, sums_of_squares};
 use crate::replay_errors::ReplayDepth;
 use crate::report;
+use crate::residual_analysis::{Innovations, ResidualAnalysis, innovations, sums_of_squares};
 use crate::rudder::{self, RudderNoise};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -38,7 +38,7 @@ use crate::structures::{self, Structures};
 use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
-/// Result of a trace: the document and the fits behind it.
+/// Result of a trace: document, base, weighted structures, noise law and replays.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// Document (`trace.json`).
@@ -51,7 +51,7 @@ pub struct Analysis {
     pub validation: Vec<RecordComparison>,
     /// Leave-one-out comparisons, if several records are fitted and none is held out; `None` if the remaining records
     /// give no base or no finite replay.
-    pub left_out: Vec<Option<RecordComparison>>,
+    pub leave_one_out: Vec<Option<RecordComparison>>,
     /// Structures with their probabilities.
     pub structures: Structures,
     /// Full model (all candidates) with the noise law of its residual.
@@ -104,7 +104,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
         true => "it is a noise law, which every trace tries anyway",
         false => lacking.unwrap_or("the records cannot show it"),
     };
-    Err(TraceError::Asked { effect, reason })
+    Err(TraceError::NoCandidate { effect, reason })
 }
 
 /// Identifies the effects missing from the first-order model of one ship. `validation` records are only replayed: no
@@ -163,24 +163,24 @@ fn analyse(
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = Base::fit(&trials)?;
-    let response = base.estimate.response;
-    let time = candidates::ship_time(&trials, response.K_over_T);
+    let time = candidates::ship_time(&trials, base.estimate.response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
-    let problem = FittedRecords::new(records, response.inverse_T, time);
+    let problem = FittedRecords::new(records, base.estimate.response.inverse_T, time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_noises);
     let members = structures.members();
     let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut keeps_base) = compare(&[])?;
     let location = locate(&problem, &full, &structures, &candidates, settings);
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
-    let hulls = hulls::fit(&trials, settings, &identification, &remainder);
+    let residual_analysis =
+        ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
+    let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
-    let held_out = averaged.compare_all(&validation, &response, settings.thorough)?;
+    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.thorough)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
-    let left_out = if is_folded { folds() } else { Vec::new() };
+    let leave_one_out = if is_folded { folds() } else { Vec::new() };
     let parts = report::TraceParts {
         trials: &trials,
         settings,
@@ -190,8 +190,8 @@ fn analyse(
         candidates: &candidates,
         identification: &identification,
         validation: (&validation, &held_out),
-        left_out: &left_out,
-        remainder: &remainder,
+        leave_one_out: &leave_one_out,
+        residual_analysis: &residual_analysis,
         location: &location,
         outliers: &outliers,
         rudder_noises: &rudder_noises,
@@ -205,7 +205,7 @@ fn analyse(
         base: base.estimate,
         identification,
         validation: held_out,
-        left_out,
+        leave_one_out,
         structures,
         full,
         hulls,
@@ -235,9 +235,9 @@ fn weighed(
         return best;
     }
     // In a calm there is no random yaw moment: heading noise is preferred if its structures replay the records better.
-    let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_of_heading()).collect();
+    let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_heading_error()).collect();
     let calm = choose(&of_heading);
-    if calm.1.mean_square_of_ship() < best.1.mean_square_of_ship() { calm } else { best }
+    if calm.1.ship_mean_square() < best.1.ship_mean_square() { calm } else { best }
 }
 
 /// Candidate terms of the selection; fails if a requested effect is not among them.
@@ -266,7 +266,7 @@ fn compare_fitted(
     let response = &base.estimate.response;
     let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
-        let record = PreparedRecord::whole(trial);
+        let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
@@ -298,12 +298,12 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     keeps_base
 }
 
-/// Member of the structure average for predictions, without the terms of single records.
+/// Structure of the average with weight, response and covariance, without the terms of single records.
 #[derive(Debug, Clone)]
 pub struct PlausibleStructure {
     /// Probability among the members.
     pub weight: f64,
-    /// Response of the ship.
+    /// Response T r' + r = K (δ + δ_r) with the effects of the structure.
     pub response: Response,
     /// Indices of the fitted parameters.
     pub fitted: Vec<usize>,
@@ -328,7 +328,7 @@ impl Analysis {
         let member = |(weight, fit): (f64, &StructureFit)| {
             let (structure, theta) = fit.structure.for_record(None, &fit.theta);
             let fitted = structure.fitted_indices();
-            let covariance = fit.kept_covariance(None).map(|kept| {
+            let covariance = fit.record_covariance(None).map(|kept| {
                 // A parameter given relative to another one is converted to its physical value.
                 let all = structure.physical_covariance(&structure.expanded_covariance(&kept));
                 DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
@@ -339,7 +339,7 @@ impl Analysis {
     }
 
     /// Weighted ships of the structure average, without the terms of single records.
-    pub fn average(&self) -> Average {
+    pub fn average(&self) -> ModelAverage {
         self.averaged(&self.structures.members()).average()
     }
 
@@ -363,6 +363,6 @@ impl Analysis {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
         let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
-        averaged.replay_on(trial, &PreparedRecord::whole(trial), &[start], ReplayDepth::Windows).ok()
+        averaged.replay_on(trial, &PreparedRecord::unaveraged(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

@@ -58,8 +58,8 @@ fn a_staircase_leads_from_the_base_to_the_noise() {
 fn several_records_are_left_out_in_turn() {
     let trials = [10.0, 15.0, 20.0].map(|rudder_deg| damped(TrialPlan { rudder_deg, ..TrialPlan::default() }));
     let analysis = traced(&trials);
-    assert_eq!(analysis.left_out.len(), 3);
-    for fold in analysis.left_out.iter().flatten() {
+    assert_eq!(analysis.leave_one_out.len(), 3);
+    for fold in analysis.leave_one_out.iter().flatten() {
         let [before, after] = [&fold.before, &fold.after].map(|on| on.errors.heading.to_degrees());
         assert!(before > 0.3 && after < 0.25 * before, "{before} and {after} deg");
     }
@@ -172,7 +172,7 @@ fn nobody_has_to_wait_for_the_folds() {
     let hurried = Hurried::default();
     let stopped = trace_with_watcher(&trials, &[], &Settings::default(), &hurried).expect("a base");
     let whole = traced(&trials);
-    assert_eq!((hurried.0.into_inner(), stopped.left_out.len(), whole.left_out.len()), (2, 0, 2));
+    assert_eq!((hurried.0.into_inner(), stopped.leave_one_out.len(), whole.leave_one_out.len()), (2, 0, 2));
     assert_eq!((named(&stopped), stopped.base.response), (named(&whole), whole.base.response));
 }
 

@@ -14,20 +14,20 @@ use crate::weights::NoiseLaw;
 /// Maximum ratio of the error of a replay to the median error; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Model average: ships with their posterior weights.
+/// Model average: ships, whose replays are averaged with their posterior weights.
 #[derive(Debug)]
-pub struct Average {
-    /// Weights, which sum to one, and ships.
+pub struct ModelAverage {
+    /// Posterior weight and ship of every member; the weights sum to one.
     pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
 
 /// Members of a model average, with the noise law of the records.
 pub struct AveragedModel<'a> {
-    /// Structures with their weights.
+    /// Structures with their posterior weights.
     pub members: &'a [(f64, &'a StructureFit)],
     /// Hulls; each has the total weight of the structures.
     pub hulls: &'a [HullEstimate],
-    /// Noise law.
+    /// Noise law of the records.
     pub law: &'a NoiseLaw,
     /// Index of the replayed record among the fitted records; `None` for a record that was not fitted.
     pub fitted_record: Option<usize>,
@@ -35,7 +35,7 @@ pub struct AveragedModel<'a> {
     pub time: f64,
 }
 
-/// Replay of an average on a record.
+/// Replay of a model average on one record.
 #[derive(Debug, Clone)]
 pub struct AverageReplay {
     /// Full replay averaged over the members.
@@ -66,17 +66,17 @@ impl AveragedModel<'_> {
     }
 
     /// Ships with their weights: structures first.
-    pub fn average(&self) -> Average {
+    pub fn average(&self) -> ModelAverage {
         let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
             Box::new(fit.structure.response(self.fitted_record, &fit.theta))
         };
         let hull = |hull: &HullEstimate| -> Box<dyn ReplayedShip> { Box::new(hull.scaled_hull::<f64>()) };
         let ships = self.members.iter().map(structure).chain(self.hulls.iter().map(hull));
-        Average { members: self.weights().zip(ships).collect() }
+        ModelAverage { members: self.weights().zip(ships).collect() }
     }
 }
 
-impl Average {
+impl ModelAverage {
     /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of the
     /// depth; `None` if no replay is finite.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
@@ -138,8 +138,7 @@ fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64
 
 /// Weighted median of one row; `total` is the sum of the weights.
 fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
-    let mut values: Vec<(f64, f64)> =
-        columns.iter().zip(weights).map(|(column, weight)| (column[row], *weight)).collect();
+    let mut values: Vec<(f64, f64)> = columns.iter().zip(weights).map(|(draw, weight)| (draw[row], *weight)).collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut sum = 0.0;
     let middle = values.iter().find(|(_, weight)| {

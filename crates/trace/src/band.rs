@@ -115,7 +115,7 @@ impl ResidualSampler {
         let columns: Vec<Vec<f64>> = (0..count).map(column).collect();
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
-        let covariance = fit.kept_covariance(after.fitted_record)?;
+        let covariance = fit.record_covariance(after.fitted_record)?;
         let law = crate::weights::NoiseLaw {
             colour: after.law.colour,
             variance: vec![variance],

@@ -17,10 +17,10 @@ const MIN_PROPELLER_CHANGE: f64 = 0.05;
 pub const PRIOR_PROBABILITY: f64 = 0.1;
 
 /// Prior probability of an effect of the measured speed or sway, which occurs for every hull.
-pub const PRIOR_PROBABILITY_OF_MOTION: f64 = 0.5;
+pub const PRIOR_PROBABILITY_MOTION_EFFECT: f64 = 0.5;
 
 /// Prior probability of a moment that depends on time, in one record: such a moment resembles noise.
-pub const PRIOR_PROBABILITY_OF_TIME: f64 = 0.001;
+pub const PRIOR_PROBABILITY_TIME_MOMENT: f64 = 0.001;
 
 /// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2).
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
@@ -56,17 +56,17 @@ pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, re
 
 /// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
 /// declares a calm, or all records if it would act in all of them.
-pub fn is_excluded_by_calm(effect: &dyn Effect, only: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
-    let is_calm = || only.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
+pub fn is_barred_by_calm(effect: &dyn Effect, record: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
+    let is_calm = || record.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_environmental() && !selection.requires(effect.id()) && is_calm()
 }
 
 /// `true` if waves are candidates for the noise law.
 pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
-    selection.allows(WaveHeading.id()) && !is_excluded_by_calm(&WaveHeading, None, trials, selection)
+    selection.allows(WaveHeading.id()) && !is_barred_by_calm(&WaveHeading, None, trials, selection)
 }
 
-/// Candidate terms that these records allow. Waves are not among them, because they are a noise law. A moment that
+/// Candidate terms of the selected effects for these records. Waves are a noise law and no candidate. A moment that
 /// depends on time alone is a separate candidate for every record.
 pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
@@ -75,30 +75,31 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             true => (0..records.len()).map(Some).collect(),
             false => vec![None],
         };
-        for only in places.into_iter().filter(|only| !is_excluded_by_calm(effect.as_ref(), *only, trials, selection)) {
-            let about = record_scales(records, trials, time, &records[only.unwrap_or(0)]);
+        let is_open = |record: &Option<usize>| !is_barred_by_calm(effect.as_ref(), *record, trials, selection);
+        for record in places.into_iter().filter(is_open) {
+            let about = record_scales(records, trials, time, &records[record.unwrap_or(0)]);
             let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
-            candidates.push(Term { effect, only, priors, log_odds: 0.0 });
+            candidates.push(Term { effect, record, priors, log_odds: 0.0 });
         }
     }
-    let forms = |id: &str, only: Option<usize>| {
-        candidates.iter().filter(|term| term.effect.id() == id && term.only == only).count() as f64
+    let forms = |id: &str, record: Option<usize>| {
+        candidates.iter().filter(|term| term.effect.id() == id && term.record == record).count() as f64
     };
     let weighted = |term: &Term| {
         let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
-            (true, _) => PRIOR_PROBABILITY_OF_TIME,
-            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_OF_MOTION,
+            (true, _) => PRIOR_PROBABILITY_TIME_MOMENT,
+            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_MOTION_EFFECT,
             (false, _) => PRIOR_PROBABILITY,
         };
-        let probability = prior / forms(term.effect.id(), term.only);
+        let probability = prior / forms(term.effect.id(), term.record);
         Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })
     };
     candidates.iter().map(weighted).collect()
 }
 
-/// `true` if a form is tried only in place of another form of its effect, and not in the full model: a short
+/// `true` for a form that replaces another form of its effect and is not in the full model: a short
 /// first-order lag and a short dead time are nearly collinear.
-pub fn is_variant(effect: &dyn Effect) -> bool {
+pub fn is_alternative(effect: &dyn Effect) -> bool {
     (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
 }
 
@@ -142,7 +143,7 @@ mod tests {
 
     /// Effects of the weather among the candidates, with the record in which they act.
     fn weather(trials: &[Trial], selection: &Selection) -> Vec<(&'static str, Option<usize>)> {
-        let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::whole).collect();
+        let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::unaveraged).collect();
         let all = all(&records, trials, 13.0, selection);
         assert!(all.iter().any(|term| term.effect.id() == "nonlinear_damping"));
         let mut named: Vec<_> =

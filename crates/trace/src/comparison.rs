@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{Average, AverageReplay, AveragedModel};
+use crate::average::{AverageReplay, AveragedModel, ModelAverage};
 use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
@@ -152,7 +152,7 @@ pub fn replay_base(
 ) -> Result<ReplayResult, TraceError> {
     let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
     let replay = replay(trial, base).ok_or_else(refuse)?;
-    let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(*base)))] };
+    let average = ModelAverage { members: vec![(1.0, Box::new(Response::first_order_ship(*base)))] };
     let windows = match depth {
         ReplayDepth::Heading => None,
         _ => average.replay(record, &[replay.initial()], depth).map(|replayed| replayed.windows),
@@ -164,15 +164,15 @@ impl AveragedModel<'_> {
     /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
     /// Fails if no replay is finite.
     pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
-        let record = PreparedRecord::whole(trial);
+        let record = PreparedRecord::unaveraged(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
         let mut before = replay_base(trial, &record, base, depth)?;
         let mut starts = initial_states(trial, base);
         starts.push(before.replay.initial());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
-            before.errors.with_moment = Some(moment.of_base(&before.replay));
-            after.errors.with_moment = Some(moment.of_average(&self.average(), &after.replay));
+            before.errors.with_moment = Some(moment.base_errors(&before.replay));
+            after.errors.with_moment = Some(moment.average_errors(&self.average(), &after.replay));
         }
         Ok(RecordComparison { before, after })
     }

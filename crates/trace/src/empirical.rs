@@ -1,7 +1,9 @@
 //! Empirical terms: monomials in yaw rate, rudder, heading and speed, with and without magnitudes, as candidates in
 //! addition to the named effects.
 
-use ship::effects::{Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, RecordScales};
+use ship::effects::{
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, RecordScales,
+};
 use ship::particulars::Dimension;
 use ship::{EffectReal, Regressor};
 
@@ -112,7 +114,7 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
     all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
         let CandidateEffect { effect, priors } = Monomial { powers, size }.candidate(&about)?;
-        Some(Arc::new(Term { effect, only: None, priors, log_odds: LOG_ODDS }))
+        Some(Arc::new(Term { effect, record: None, priors, log_odds: LOG_ODDS }))
     })
 }
 
@@ -146,8 +148,8 @@ impl Effect for Monomial {
         Some(CandidateEffect::with_normal_prior(*self, PRIOR_SD_RAD))
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {
@@ -155,7 +157,7 @@ impl Effect for Monomial {
     }
 }
 
-impl<R: EffectReal> Action<R> for Monomial {
+impl<R: EffectReal> EffectEquations<R> for Monomial {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];

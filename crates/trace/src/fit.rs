@@ -21,34 +21,34 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingRule {
     /// Maximum number of steps.
-    pub steps: usize,
+    pub max_steps: usize,
     /// Predicted decrease of J below which the fit ends.
-    pub negligible: f64,
+    pub min_decrease: f64,
 }
 
 impl StoppingRule {
-    /// Tolerance that suffices for a quadratic approximation of the posterior.
-    pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
-    /// Tolerance of a converged fit.
-    pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
+    /// Rule that suffices for a quadratic approximation of the posterior.
+    pub const COARSE: Self = Self { max_steps: 6, min_decrease: 0.5 };
+    /// Rule of a converged fit.
+    pub const FINE: Self = Self { max_steps: 15, min_decrease: 0.03 };
 
     fn rules(self) -> SearchSettings {
         SearchSettings {
-            steps: self.steps,
+            max_steps: self.max_steps,
             damping: 1e-3,
             shrink: 0.1,
             trust_ratio: 0.5,
             grow: 8.0,
             min_damping: [0.0, 1e-6],
             max_rejections: 8,
-            min_decrease: self.negligible,
-            tolerance: [self.negligible, 0.0],
+            min_decrease: self.min_decrease,
+            tolerance: [self.min_decrease, 0.0],
             max_small_steps: 1,
         }
     }
 }
 
-/// Records of one joint fit.
+/// Prepared records of one joint fit, with their noise transitions.
 #[derive(Debug, Clone)]
 pub struct FittedRecords {
     /// Prepared records.
@@ -63,14 +63,14 @@ impl FittedRecords {
     /// Prepares records of a ship with this 1/T (1/s) of the base and L/U = `time` (s).
     pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
         let mut all = Self { records, noise: Vec::new(), time };
-        all.noise = all.noise_of(inverse_time);
+        all.noise = all.noise_transitions(inverse_time);
         all
     }
 
     /// Noise transitions of the records for a ship of this 1/T, 1/s.
-    pub fn noise_of(&self, inverse_time: f64) -> Vec<RecordNoise> {
+    pub fn noise_transitions(&self, inverse_time: f64) -> Vec<RecordNoise> {
         let full = self.records.iter().map(|record| record.full_readings).max().unwrap_or(1);
-        let noise = |record| RecordNoise::new(record, inverse_time, self.longest(), full);
+        let noise = |record| RecordNoise::new(record, inverse_time, self.longest_duration(), full);
         self.records.iter().map(noise).collect()
     }
 
@@ -80,7 +80,7 @@ impl FittedRecords {
     }
 
     /// Duration of the longest record, s.
-    pub fn longest(&self) -> f64 {
+    pub fn longest_duration(&self) -> f64 {
         self.records.iter().map(PreparedRecord::duration).fold(0.0, f64::max)
     }
 
@@ -342,7 +342,7 @@ impl StructureFit {
         problem.fit(&self.structure.with_terms(terms), theta, self.initial.clone(), weights, effort)
     }
 
-    /// Covariance of all entries of θ, zero for fixed ones; `None` if the precision is singular.
+    /// Covariance of all entries of θ, zero for fixed entries; `None` if the precision is singular.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
         let covariance = self.structure.expanded_covariance(&inverse);
@@ -358,11 +358,10 @@ impl StructureFit {
     }
 
     /// Covariance of the fitted entries of [`Structure::for_record`] for a record.
-    pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
+    pub fn record_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();
-        let kept =
-            self.structure.response_indices(record).into_iter().filter(|&place| entries[place].prior.is_fitted());
+        let kept = self.structure.response_indices(record).into_iter().filter(|&k| entries[k].prior.is_fitted());
         let kept: Vec<usize> = kept.collect();
         Some(DMatrix::from_fn(kept.len(), kept.len(), |i, j| all[(kept[i], kept[j])]))
     }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 
 use crate::base::Base;
-use crate::candidates::is_variant;
+use crate::candidates::is_alternative;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
@@ -17,7 +17,7 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 /// Noise standard deviation of the first fit over the root mean square residual of the base.
 const FIRST_NOISE_RATIO: f64 = 0.1;
 
-/// Full model of some records.
+/// Full model: base and all candidate effects fitted jointly, with the noise law of the residual.
 #[derive(Debug, Clone)]
 pub struct FullModel {
     /// Fit of base and candidates.
@@ -28,7 +28,7 @@ pub struct FullModel {
     pub waves_gain: f64,
 }
 
-/// Fits the full model under each plausible noise law of some `kinds`: (1) law of the stationary candidates only, (2)
+/// Full models under each plausible noise law of the given `kinds`: (1) law of the stationary candidates only, (2)
 /// with candidates that begin at an instant, (3) heading error only, if one of these laws is a random moment, (4) law
 /// of the base without any candidate. Laws that agree are fitted once.
 pub fn fit(
@@ -38,8 +38,8 @@ pub fn fit(
     with_waves: bool,
     kinds: &[CorrelatedNoise],
 ) -> Vec<FullModel> {
-    let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
-        candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).partition(|term| term.effect.has_instant());
+    let kept = candidates.iter().filter(|term| !is_alternative(term.effect.as_ref()));
+    let (transient, stationary): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) = kept.partition(|term| term.effect.has_instant());
     let base_structure = Structure::base(problem.records.len(), problem.time);
     let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST_NOISE_RATIO * FIRST_NOISE_RATIO) * base.mean_square());
@@ -66,7 +66,7 @@ pub fn fit(
     let stationary_law = stationary.law.clone();
     let whole = refit(&stationary_law);
     let mut laws = vec![estimate_law(&whole, &stationary_law, kinds)];
-    let of_heading: Vec<CorrelatedNoise> = kinds.iter().copied().filter(|kind| kind.is_of_heading()).collect();
+    let of_heading: Vec<CorrelatedNoise> = kinds.iter().copied().filter(|kind| kind.is_heading_error()).collect();
     if !laws[0].law.is_alike(&stationary_law) {
         laws.push(stationary);
     }
@@ -110,7 +110,7 @@ fn fit_stationary(
     let fits = starts.par_iter().map(|values| {
         let theta =
             start_point(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
-        problem.fit(structure, theta, base.initial(), weights, StoppingRule { steps: 4, ..StoppingRule::COARSE })
+        problem.fit(structure, theta, base.initial(), weights, StoppingRule { max_steps: 4, ..StoppingRule::COARSE })
     });
     let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
     let fits: Vec<StructureFit> = fits.collect();

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
-use crate::remainder::{Remainder, sums_of_squares};
+use crate::residual_analysis::{ResidualAnalysis, sums_of_squares};
 use crate::settings::Settings;
 
 /// Hulls that fit the records about as well as the structures, with earlier trials as priors. No hulls without length
@@ -14,9 +14,9 @@ pub fn fit(
     trials: &[Trial],
     settings: &Settings,
     comparisons: &[RecordComparison],
-    remainder: &Remainder,
+    residual_analysis: &ResidualAnalysis,
 ) -> Vec<HullEstimate> {
-    if !settings.hulls || remainder.is_noise && settings.earlier.is_empty() {
+    if !settings.hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
@@ -28,5 +28,5 @@ pub fn fit(
 
 /// Hulls refitted to other records under the same priors.
 pub fn refit(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
-    hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.expected).ok()).collect()
+    hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.prior).ok()).collect()
 }

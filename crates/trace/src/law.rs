@@ -79,7 +79,7 @@ impl<'a> LinearisedFit<'a> {
         Self { problem, linear, prior, floors: min_variances(problem, fit.theta[1]) }
     }
 
-    /// Law with the least criterion among some kinds, with the waves and the start variances of the law `start`.
+    /// Law with the least criterion among the given kinds, with the waves and the start variances of the law `start`.
     pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
         let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
@@ -197,7 +197,7 @@ pub struct EstimatedNoiseLaw {
     pub waves_gain: f64,
 }
 
-/// Estimates the noise law of the residual of a fit among some kinds of colour; `variance` (rad²) is the start.
+/// Noise law of the residual of a fit, estimated among the given kinds of colour; `variance` (rad²) is the start.
 pub fn estimate(
     problem: &FittedRecords,
     fit: &StructureFit,

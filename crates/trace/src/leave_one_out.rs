@@ -84,12 +84,12 @@ fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
     }
     let mut terms = Vec::new();
     for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
-        if term.only == Some(omitted) {
+        if term.record == Some(omitted) {
             continue;
         }
         theta.extend_from_slice(&fit.theta[range]);
         let mut kept = term.as_ref().clone();
-        kept.only = kept.only.map(|record| if record > omitted { record - 1 } else { record });
+        kept.record = kept.record.map(|record| if record > omitted { record - 1 } else { record });
         terms.push(kept.into());
     }
     (Structure { records: structure.records - 1, terms, ..*structure }, theta)

@@ -19,7 +19,7 @@ const MAX_P_VALUE: f64 = 0.05;
 /// noise.
 const MIN_DENSITY_RATIO: f64 = 4.0;
 
-/// Named effects, and the shape analysis of their residual.
+/// Named effects, displaced effects, and the shape analysis of the residual.
 #[derive(Debug, Clone)]
 pub struct Location {
     /// Named effects, the most probable first.
@@ -142,8 +142,8 @@ impl NamedStructures<'_> {
     /// `true` if an effect improves the evidence (not required of a group) with coefficients significant at
     /// [`MAX_P_VALUE`].
     fn is_supported(&self, effect: &EffectNaming) -> bool {
-        let (id, _, only) = effect.term;
-        let is_gain = self.structures.support_of(id, only).gain > 0.0 || !effect.aliases.is_empty();
+        let (id, _, record) = effect.term;
+        let is_gain = self.structures.effect_evidence(id, record).gain > 0.0 || !effect.aliases.is_empty();
         is_gain && self.p_value(effect.term).is_none_or(|p_value| p_value < MAX_P_VALUE)
     }
 
@@ -159,13 +159,13 @@ impl NamedStructures<'_> {
         chi_square_p_value(&sizes, &fit.covariance()?)
     }
 
-    /// Shape analysis of the residual of some named effects.
+    /// Shape analysis of the residual of the named effects.
     fn shapes(&self, named: &[EffectNaming]) -> Option<ShapeAnalysis> {
         let names: Vec<TermName> = named.iter().map(|effect| effect.term).collect();
         shape::analyse_shapes(self.problem, &self.fit(&names)?, &self.full.law)
     }
 
-    /// Fit of the structure of some terms: the weighed one, otherwise a new fit from their values in other structures.
+    /// Fit of the structure with these terms: weighed before, or a new fit from their values in other structures.
     /// `None` if a term is no candidate.
     fn fit(&self, names: &[TermName]) -> Option<StructureFit> {
         let weighed = || self.structures.all.iter().map(|weighed| &weighed.fit);

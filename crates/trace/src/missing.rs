@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::effects::Prior;
 
 use crate::analysis::Analysis;
-use crate::candidates::is_variant;
+use crate::candidates::is_alternative;
 use crate::fit::StoppingRule;
 use crate::full::start_point;
 use crate::law::MIN_HEADING_SD_RAD;
@@ -25,7 +25,7 @@ impl Analysis {
         let theta = |values: &mut dyn Iterator<Item = f64>| start_point(&structure, &self.base.response, values);
         let base = self.problem.residual(&structure, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
-        let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_variant(term.effect.as_ref())).collect();
+        let mut alone: Vec<_> = self.candidates.iter().filter(|term| !is_alternative(term.effect.as_ref())).collect();
         alone.sort_by(|a, b| probable(&b.name()).total_cmp(&probable(&a.name())));
         let fits: Vec<(TermName, Vec<Vec<f64>>)> = alone
             .par_iter()
@@ -44,7 +44,7 @@ impl Analysis {
                 |residual: &[f64]| base[number].iter().zip(residual).map(|(base, other)| base - other).collect();
             let mut explanations = Vec::new();
             if let Some((_, best)) = model.first().filter(|(_, fit)| !fit.structure.terms.is_empty()) {
-                let acting = best.structure.terms.iter().filter(|term| term.only.is_none_or(|only| only == number));
+                let acting = best.structure.terms.iter().filter(|term| term.record.is_none_or(|only| only == number));
                 let effects = acting.map(|term| (term.effect.id(), term.effect.form())).collect();
                 let rows = self.problem.records[number].observed.len();
                 let mut mean = vec![0.0; rows];
@@ -53,7 +53,7 @@ impl Analysis {
                 }
                 explanations.push(RelativeResponse { effects, heading: difference(&mean) });
             }
-            let here = fits.iter().filter(|((_, _, only), _)| only.is_none_or(|only| only == number));
+            let here = fits.iter().filter(|((_, _, record), _)| record.is_none_or(|record| record == number));
             explanations.extend(here.map(|((id, form, _), residual)| RelativeResponse {
                 effects: vec![(*id, *form)],
                 heading: difference(&residual[number]),

@@ -31,8 +31,8 @@ const BASE_SD: [f64; 2] = [3.0, 6.0];
 pub struct Term {
     /// Effect.
     pub effect: Arc<dyn Effect>,
-    /// Index of the one record in which it acts; `None` for all.
-    pub only: Option<usize>,
+    /// Index of the record in which the effect acts; `None` for all records.
+    pub record: Option<usize>,
     /// Priors of the parameters.
     pub priors: Vec<Prior>,
     /// Log prior odds.
@@ -45,7 +45,7 @@ pub type TermName = (&'static str, &'static str, Option<usize>);
 impl Term {
     /// Identifier, form and record.
     pub fn name(&self) -> TermName {
-        (self.effect.id(), self.effect.form(), self.only)
+        (self.effect.id(), self.effect.form(), self.record)
     }
 
     /// Parameter values at which the effect is absent; shape parameters at their prior means.
@@ -64,10 +64,10 @@ impl Term {
 pub struct ModelParameter {
     /// Name and unit.
     pub parameter: &'static Parameter,
-    /// Prior distribution of the parameter, in its own unit.
+    /// Prior distribution, in the unit of the parameter.
     pub prior: Prior,
-    /// Index of the one record to which it belongs; `None` for all.
-    pub only: Option<usize>,
+    /// Index of the record to which the parameter belongs; `None` for all records.
+    pub record: Option<usize>,
 }
 
 /// Relative tolerance for "at its bound": a step that ends there adds a rounding error.
@@ -132,17 +132,18 @@ impl Structure {
 
     /// Entries of θ.
     pub fn entries(&self) -> Vec<ModelParameter> {
-        let base = |k: usize, sd: f64, only| ModelParameter {
+        let base = |k: usize, sd: f64, record| ModelParameter {
             parameter: &BASE_PARAMETERS[k],
             prior: Prior::normal(&BASE_PARAMETERS[k], 0.0, sd),
-            only,
+            record,
         };
         let scale = [BASE_SD[0] / self.time, BASE_SD[1] / (self.time * self.time), BIAS_SD];
         let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETER_COUNT).map(|k| base(k, scale[k], None)).collect();
         entries.extend((0..self.deviations()).map(|record| base(2, RECORD_BIAS_SD, Some(record))));
         for term in &self.terms {
             let parameters = term.effect.parameters().iter().zip(&term.priors);
-            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter { parameter, prior, only: term.only }));
+            let record = term.record;
+            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter { parameter, prior, record }));
         }
         entries
     }
@@ -185,7 +186,7 @@ impl Structure {
 
     /// `true` if an entry of θ acts in a record.
     pub fn acts_in(entry: &ModelParameter, record: usize) -> bool {
-        entry.only.is_none_or(|only| only == record)
+        entry.record.is_none_or(|number| number == record)
     }
 
     /// Entries of θ that are given relative to another one: index, index of the reference.
@@ -225,7 +226,7 @@ impl Structure {
     /// Structure and parameters for one fitted record; with `None` for any other record of the ship.
     pub fn for_record(&self, record: Option<usize>, theta: &[f64]) -> (Self, Vec<f64>) {
         let kept = self.terms.iter().filter(|term| Self::applies(term, record));
-        let terms = kept.map(|term| Arc::new(Term { only: None, ..term.as_ref().clone() })).collect();
+        let terms = kept.map(|term| Arc::new(Term { record: None, ..term.as_ref().clone() })).collect();
         let mut values: Vec<f64> = self.response_indices(record).into_iter().map(|place| theta[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             values[2] += theta[BASE_PARAMETER_COUNT + record];
@@ -236,7 +237,7 @@ impl Structure {
     /// `true` if a term applies to a fitted record, or to any other record (`None`).
     fn applies(term: &Term, record: Option<usize>) -> bool {
         match record {
-            Some(record) => term.only.is_none_or(|only| only == record),
+            Some(record) => term.record.is_none_or(|number| number == record),
             None => !term.effect.is_time_dependent(),
         }
     }
@@ -305,7 +306,7 @@ mod tests {
             let term = |effect: &Arc<dyn Effect>| {
                 let priors = effect.parameters().iter().map(|parameter| Prior::normal(parameter, 0.0, 1.0)).collect();
                 let only = only.filter(|_| effect.is_time_dependent());
-                Arc::new(Term { effect: Arc::clone(effect), only, priors, log_odds: 0.0 })
+                Arc::new(Term { effect: Arc::clone(effect), record: only, priors, log_odds: 0.0 })
             };
             let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();
             let structure = Structure::base(records, 13.0).with_terms(terms);

@@ -10,10 +10,10 @@ const MIN_PROBABILITY: f64 = 0.05;
 /// Maximum number of effects in a group.
 const MAX_GROUP_SIZE: usize = 3;
 
-/// Ratio of the allowed 1 − probability of a group to that of a single effect: a group is more often right by chance.
+/// Ratio of the allowed 1 − probability, group over single effect: a group is more often right by chance.
 const GROUP_DOUBT_RATIO: f64 = 0.6;
 
-/// Named effect, or group of effects of which one is present.
+/// Named effect, or group of effects that the records cannot separate, with its probability.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectNaming {
     /// Most probable form of the effect.
@@ -34,7 +34,7 @@ impl EffectNaming {
     }
 }
 
-/// Identifier of an effect, with the one record in which it acts.
+/// Identifier of an effect with the index of its record; `None` for all records.
 type EffectKey = (&'static str, Option<usize>);
 
 /// Named effects, the most probable first: above the threshold, requested, or in a group above it.
@@ -43,7 +43,7 @@ pub fn named_effects(structures: &Structures, threshold: f64, selection: &Select
     for name in structures.probabilities.keys() {
         let key = (name.0, name.2);
         if keys.iter().all(|(other, _)| *other != key) {
-            keys.push((key, structures.probability_of(key.0, key.1)));
+            keys.push((key, structures.effect_probability(key.0, key.1)));
         }
     }
     keys.sort_by(|(a, p), (b, q)| q.total_cmp(p).then(a.cmp(b)));
@@ -62,8 +62,8 @@ pub fn named_effects(structures: &Structures, threshold: f64, selection: &Select
 }
 
 /// Effect in its most probable form, without aliases.
-fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64) -> EffectNaming {
-    let is_form = |name: &&TermName| name.0 == id && name.2 == only;
+fn named_effect(structures: &Structures, (id, record): EffectKey, probability: f64) -> EffectNaming {
+    let is_form = |name: &&TermName| name.0 == id && name.2 == record;
     let mut forms: Vec<(TermName, f64)> =
         structures.probabilities.keys().filter(is_form).map(|name| (*name, structures.probabilities[name])).collect();
     forms.sort_by(|(a, p), (b, q)| q.total_cmp(p).then(a.cmp(b)));
@@ -73,7 +73,7 @@ fn named_effect(structures: &Structures, (id, only): EffectKey, probability: f64
 
 /// Smallest group of effects whose joint probability suffices, the most probable effect first; `None` if there is none.
 fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
-    let union = |group: &[EffectKey]| structures.probability_of_any(|name| group.contains(&(name.0, name.2)));
+    let union = |group: &[EffectKey]| structures.inclusion_probability(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];
     while group.len() < MAX_GROUP_SIZE {
         let before = union(&group);

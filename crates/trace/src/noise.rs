@@ -24,16 +24,16 @@ use crate::record::PreparedRecord;
 pub enum CorrelatedNoise {
     /// White yaw moment: r' = −a r + w.
     White,
-    /// Gusts: r' = −a r + d, d' = −d/τ + w; the index is that of τ in [`GUST_CORRELATION_SHARES`].
+    /// Gusts: r' = −a r + d, d' = −d/τ + w, with τ by its index in [`GUST_CORRELATION_SHARES`].
     OrnsteinUhlenbeck(usize),
     /// Random-walk moment: r' = −a r + d, d' = w.
     Walk,
-    /// Compass error ε added to the heading: ε' = −ε/τ + w; the index is that of τ in [`COMPASS_CORRELATION_SHARES`].
+    /// Compass error ε added to the heading: ε' = −ε/τ + w, with τ by its index in [`COMPASS_CORRELATION_SHARES`].
     Compass(usize),
-    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w; the index is that of τ in
+    /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w, with τ by its index in
     /// [`SMOOTH_ERROR_CORRELATION_SHARES`].
     Smooth(usize),
-    /// Smooth moment of unknown shape (Matérn 3/2): r' = −a r + d, d'' + 2d'/τ + d/τ² = w; the index is that of τ in
+    /// Smooth moment of unknown shape (Matérn 3/2): r' = −a r + d, d'' + 2d'/τ + d/τ² = w, with τ by its index in
     /// [`SMOOTH_MOMENT_CORRELATION_SHARES`].
     SmoothMoment(usize),
 }
@@ -72,12 +72,12 @@ impl CorrelatedNoise {
             .chain((0..SMOOTH_ERROR_CORRELATION_SHARES.len()).map(Self::Smooth))
     }
 
-    /// `true` for an error of the heading, `false` for a moment.
-    pub fn is_of_heading(self) -> bool {
+    /// `true` for an error of the heading, `false` for a yaw moment.
+    pub fn is_heading_error(self) -> bool {
         matches!(self, Self::Compass(_) | Self::Smooth(_))
     }
 
-    /// Number of parameters: the level, and the correlation time if there is one.
+    /// Number of parameters: the level, and the correlation time of coloured noise.
     pub fn parameter_count(self) -> usize {
         if matches!(self, Self::White | Self::Walk) { 1 } else { 2 }
     }

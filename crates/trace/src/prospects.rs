@@ -1,7 +1,6 @@
 //! Value of a planned trial: the aliases it would separate and the unobservable effects it would reveal.
 //!
-//! The expected posterior covariance of the full model is that of a Gaussian experiment design (Chaloner and Verdinelli
-//! 1995).
+//! Expected posterior covariance of the full model: Gaussian experiment design (Chaloner and Verdinelli 1995).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,12 +28,12 @@ pub struct Prospect {
     pub name: String,
     /// Pairs (named effect, alias) that the records and this trial together would separate.
     pub separated: Vec<[String; 2]>,
-    /// Pairs that they would not separate.
-    pub still_alike: Vec<[String; 2]>,
+    /// Pairs (named effect, alias) that would stay inseparable.
+    pub inseparable: Vec<[String; 2]>,
     /// Unobservable effects that this trial would reveal.
     pub revealed: Vec<String>,
-    /// Unobservable effects that it would not reveal.
-    pub still_hidden: Vec<String>,
+    /// Effects that would stay unobservable.
+    pub unobservable: Vec<String>,
     /// Σ log(1 + visibility) over all candidates; ranks trials that separate and reveal equally many.
     pub information: f64,
 }
@@ -59,15 +58,15 @@ impl Analysis {
         };
         let effects = self.document.effects.iter();
         let pairs = effects.flat_map(|effect| effect.alias_forms.iter().map(|other| pair(effect, other)));
-        let (separated, still_alike) = pairs.partition(|pair| pair.iter().all(is_visible));
+        let (separated, inseparable) = pairs.partition(|pair| pair.iter().all(is_visible));
         let hidden = self.document.candidates.iter().flat_map(|candidate| {
             let forms = candidate.forms.iter();
             let hidden = forms.filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none());
             hidden.map(|form| names::effect_form(&candidate.id, &form.form))
         });
-        let (revealed, still_hidden) = hidden.partition(is_visible);
+        let (revealed, unobservable) = hidden.partition(is_visible);
         let information = visibility.iter().map(|(_, visibility)| visibility.ln_1p()).sum();
-        Some(Prospect { name: name.to_owned(), separated, still_alike, revealed, still_hidden, information })
+        Some(Prospect { name: name.to_owned(), separated, inseparable, revealed, unobservable, information })
     }
 
     /// Expected visibility of every candidate of the ship from the records and another trial; `None` if the
@@ -81,7 +80,7 @@ impl Analysis {
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
         let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal(&problem.weights(&law));
-        let fitted = full.kept_covariance(None)?.try_inverse()?;
+        let fitted = full.record_covariance(None)?.try_inverse()?;
         let count = fitted.nrows();
         let mut precision = normal.matrix;
         precision.view_mut((0, 0), (count, count)).zip_apply(&fitted, |sum, fitted| *sum += fitted);

@@ -81,8 +81,8 @@ impl PreparedRecord {
         Self::new(trial, group, group * per_heading, rudder)
     }
 
-    /// Record with all rows of a trial.
-    pub fn whole(trial: &Trial) -> Self {
+    /// Prepared record with all rows of a trial, without averaging.
+    pub fn unaveraged(trial: &Trial) -> Self {
         Self::new(trial, 1, 1, 1)
     }
 

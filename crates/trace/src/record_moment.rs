@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Polyline};
 
-use crate::average::Average;
+use crate::average::ModelAverage;
 use crate::record::PreparedRecord;
 use crate::replay_errors::{MomentErrors, ReplayDepth};
 
@@ -75,7 +75,7 @@ impl<'a> RecordMoment<'a> {
     }
 
     /// Errors of the base with a moment; `plain` is its replay without one.
-    pub fn of_base(&self, plain: &Replay) -> MomentErrors {
+    pub fn base_errors(&self, plain: &Replay) -> MomentErrors {
         let residual = self.residual(plain);
         let [bias, slow] = self.regressions.each_ref().map(|regression| regression.solve(&residual).1);
         let bias = bias.min(plain.rms());
@@ -83,7 +83,7 @@ impl<'a> RecordMoment<'a> {
     }
 
     /// Errors of an average with a moment; `plain` is its replay without one, kept if its ships diverge.
-    pub fn of_average(&self, average: &Average, plain: &Replay) -> MomentErrors {
+    pub fn average_errors(&self, average: &ModelAverage, plain: &Replay) -> MomentErrors {
         let mut record = self.record.clone();
         let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; KNOTS]);
         let mut search = |regression: &MomentRegression, replays: usize| {
@@ -180,13 +180,13 @@ mod tests {
     #[test]
     fn replays_of_the_base_find_its_least_squares() {
         let trial = moved(&plain(1, 10.0), |t| 0.01 * (t / 80.0).sin());
-        let record = PreparedRecord::whole(&trial);
+        let record = PreparedRecord::unaveraged(&trial);
         for inverse_time in [BASE[0], -0.01] {
             let base = FirstOrder { inverse_T: inverse_time, K_over_T: BASE[1], rudder_bias: BASE[2] };
             let moment = RecordMoment::new(&record, &base).expect("enough headings");
             let replay = replay_base(&trial, &record, &base, ReplayDepth::Heading).expect("finite").replay;
-            let average = Average { members: vec![(1.0, Box::new(Response::first_order_ship(base)))] };
-            let [exact, replayed] = [moment.of_base(&replay), moment.of_average(&average, &replay)].map(deg);
+            let average = ModelAverage { members: vec![(1.0, Box::new(Response::first_order_ship(base)))] };
+            let [exact, replayed] = [moment.base_errors(&replay), moment.average_errors(&average, &replay)].map(deg);
             for (exact, replayed) in exact.into_iter().zip(replayed) {
                 assert!((exact - replayed).abs() < 0.02 * exact, "{exact} and {replayed} deg, 1/T = {inverse_time}");
             }

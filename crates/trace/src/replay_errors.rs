@@ -115,7 +115,7 @@ pub fn has_several_windows(window: f64, time: &[f64]) -> bool {
     (1.0 + MIN_LAST_PIECE) * window <= duration(time)
 }
 
-/// Time from the first to the last of some instants, s; 0 without any.
+/// Duration from the first to the last time, s; 0 without times.
 pub fn duration(time: &[f64]) -> f64 {
     time.last().zip(time.first()).map_or(0.0, |(last, first)| last - first)
 }
@@ -257,8 +257,8 @@ fn run<R: Real>(
     });
 }
 
-/// Residual of some rows for an initial state, and its sensitivities to the initial heading and to the initial yaw rate
-/// times the duration.
+/// Residual of a row range for an initial state, and its sensitivities to the initial heading and to the initial yaw
+/// rate times the duration.
 struct InitialStateFit {
     initial: [f64; 2],
     residual: Vec<f64>,
@@ -266,7 +266,7 @@ struct InitialStateFit {
     square: f64,
 }
 
-/// Least-squares initial heading and yaw rate of some rows (Gauss–Newton with damped steps), preceded by the sum of
+/// Least-squares initial heading and yaw rate of a row range (Gauss–Newton with damped steps), preceded by the sum of
 /// squares; `None` if it is not finite, or if the search reaches a state already `visited`.
 fn fit_initial_state(
     ship: &dyn ReplayedShip,
@@ -329,7 +329,7 @@ mod tests {
         let trial = record(&base, TrialPlan { noise_deg: 0.0, ..TrialPlan::default() });
         for duration in HORIZONS_S {
             let headings =
-                restarted_headings(&base, &PreparedRecord::whole(&trial), [0.0, 0.0], duration).expect("a replay");
+                restarted_headings(&base, &PreparedRecord::unaveraged(&trial), [0.0, 0.0], duration).expect("a replay");
             let errors = headings.iter().zip(trial.heading()).map(|(replayed, psi)| (replayed - psi).abs());
             let largest = errors.fold(0.0, f64::max);
             assert!(headings.len() == trial.len() && largest < 1e-5, "{duration} s: {largest}");

@@ -14,7 +14,7 @@ use ship::{Particulars, Regressor};
 use trial::Trial;
 
 use crate::base::Base;
-use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_OF_TIME, is_excluded_by_calm};
+use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_barred_by_calm};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::FullModel;
@@ -22,7 +22,7 @@ use crate::location::Location;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::record::PreparedRecord;
-use crate::remainder::Remainder;
+use crate::residual_analysis::ResidualAnalysis;
 use crate::rudder::RudderNoise;
 use crate::sentences;
 use crate::settings::Settings;
@@ -50,9 +50,9 @@ pub struct TraceParts<'a> {
     /// Held-out records with their comparisons.
     pub validation: (&'a [Trial], &'a [RecordComparison]),
     /// Leave-one-out comparisons.
-    pub left_out: &'a [Option<RecordComparison>],
+    pub leave_one_out: &'a [Option<RecordComparison>],
     /// Residual analysis.
-    pub remainder: &'a Remainder,
+    pub residual_analysis: &'a ResidualAnalysis,
     /// Named effects and shapes.
     pub location: &'a Location,
     /// Times of the removed compass outliers of the fitted records, s.
@@ -78,9 +78,9 @@ impl TraceParts<'_> {
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
         let mut named = self.location.named.clone();
-        named.retain(|naming| self.remainder.is_credible || selection.requires(naming.term.0));
+        named.retain(|naming| self.residual_analysis.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
-        let signature = self.remainder.signature.as_ref();
+        let residual_peak = self.residual_analysis.residual_peak.as_ref();
         let error = self.errors();
         let disturbance = self.disturbance();
         let verdict = self.verdict(effects.is_empty(), disturbance.is_some());
@@ -104,15 +104,15 @@ impl TraceParts<'_> {
             prior: PriorEntry {
                 candidates: self.candidates.len(),
                 probability: PRIOR_PROBABILITY,
-                probability_of_time: PRIOR_PROBABILITY_OF_TIME,
+                probability_of_time: PRIOR_PROBABILITY_TIME_MOMENT,
                 named_from: self.settings.probability,
                 odds_factors: prior_odds::PRIOR_ODDS_FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
             unexplained: UnexplainedEntry {
-                present: self.remainder.is_unexplained,
-                signature: signature
-                    .map(|s| sentences::signature_sentence(s, &self.trials[s.record].title()) + &self.bands()),
+                present: self.residual_analysis.is_unexplained,
+                signature: residual_peak
+                    .map(|s| sentences::residual_peak_sentence(s, &self.trials[s.record].title()) + &self.bands()),
             },
             disturbance,
             located,
@@ -137,7 +137,7 @@ impl TraceParts<'_> {
     /// Verdict of the trace, the first that holds.
     fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> Verdict {
         match (self.location.is_located(), is_unnamed, is_disturbed) {
-            _ if self.remainder.is_unexplained => Verdict::Unexplained,
+            _ if self.residual_analysis.is_unexplained => Verdict::Unexplained,
             (true, ..) => Verdict::Located,
             (_, false, _) => Verdict::Traced,
             (.., true) => Verdict::Disturbed,
@@ -159,8 +159,8 @@ impl TraceParts<'_> {
         self.trials.iter().find_map(Trial::particulars)
     }
 
-    fn only(&self, only: Option<usize>) -> Option<String> {
-        only.map(|number| self.trials[number].name().to_owned())
+    fn record_name(&self, record: Option<usize>) -> Option<String> {
+        record.map(|number| self.trials[number].name().to_owned())
     }
 
     fn equation(&self, id: &str, form: &str) -> &'static str {
@@ -203,16 +203,16 @@ impl TraceParts<'_> {
             true => quantity(NormalMixture { components: parts }.summary()),
             false => Quantity::without_uncertainty(parts[0].1),
         };
-        self.number(entry.parameter, quantity, entry.only, entry.is_at_bound(fitted))
+        self.number(entry.parameter, quantity, entry.record, entry.is_at_bound(fitted))
     }
 
-    fn number(&self, parameter: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
+    fn number(&self, parameter: &Parameter, value: Quantity, record: Option<usize>, at_bound: bool) -> ParameterEntry {
         let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
-            quantity: quantity.scaled(ship.prime_factor(parameter.dimension())),
+            quantity: value.scaled(ship.prime_factor(parameter.dimension())),
             unit: prime_unit(parameter.unit),
         });
         let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
-        ParameterEntry { key, symbol, quantity, unit, prime, only: self.only(only), at_bound }
+        ParameterEntry { key, symbol, quantity: value, unit, prime, only: self.record_name(record), at_bound }
     }
 
     /// Parameters of a term, averaged over the structures that have it.
@@ -237,8 +237,8 @@ impl TraceParts<'_> {
 
     fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
         let entry = |naming: &EffectNaming| {
-            let (id, form, only) = naming.term;
-            let support = self.structures.support_of(id, only);
+            let (id, form, record) = naming.term;
+            let support = self.structures.effect_evidence(id, record);
             let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
@@ -247,7 +247,7 @@ impl TraceParts<'_> {
                 id: id.into(),
                 form: form.into(),
                 equation: self.equation(id, form).into(),
-                only: self.only(only),
+                only: self.record_name(record),
                 required: asked,
                 alias_forms,
                 parameters: self.term_parameters(naming.term),
@@ -301,7 +301,7 @@ impl TraceParts<'_> {
         let excluded = !selection.allows(id);
         let mut effects = selection.effects();
         effects.retain(|form| form.id() == id);
-        let becalmed = effects.iter().any(|form| is_excluded_by_calm(form.as_ref(), None, self.trials, selection));
+        let becalmed = effects.iter().any(|form| is_barred_by_calm(form.as_ref(), None, self.trials, selection));
         let reason = match (forms.is_empty(), excluded) {
             (_, true) => Some("excluded on request"),
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
@@ -314,7 +314,7 @@ impl TraceParts<'_> {
         let best = forms.iter().min_by(|a, b| a.outcome.cmp(&b.outcome).then(b.probability.total_cmp(&a.probability)));
         let probability = match is_sea {
             true => f64::from(u8::from(sea)),
-            false => self.structures.probability_of_any(|name| name.0 == id),
+            false => self.structures.inclusion_probability(|name| name.0 == id),
         };
         let outcome = match (is_sea && !excluded && !becalmed, sea) {
             (true, true) => Outcome::Added,
@@ -335,7 +335,7 @@ impl TraceParts<'_> {
     }
 
     fn form(&self, name: TermName, named: &[EffectNaming]) -> FormEntry {
-        let (_, form, only) = name;
+        let (_, form, record) = name;
         let visibility = self.structures.visibility.get(&name).copied();
         let outcome = if named.iter().any(|naming| naming.term == name) {
             Outcome::Added
@@ -349,7 +349,7 @@ impl TraceParts<'_> {
         let support = self.structures.support.get(&name);
         FormEntry {
             form: form.into(),
-            only: self.only(only),
+            only: self.record_name(record),
             outcome,
             probability: self.structures.probabilities.get(&name).map_or(0.0, |weight| weight.clamp(0.0, 1.0)),
             delta_bic: support.map(|support| -2.0 * support.gain.clamp(-1e6, 1e6)),
@@ -358,8 +358,8 @@ impl TraceParts<'_> {
         }
     }
 
-    fn term(&self, (id, form, only): TermName) -> TermEntry {
-        TermEntry { id: id.into(), form: form.into(), only: self.only(only) }
+    fn term(&self, (id, form, record): TermName) -> TermEntry {
+        TermEntry { id: id.into(), form: form.into(), only: self.record_name(record) }
     }
 
     fn listed(&self) -> Vec<StructureEntry> {
@@ -381,15 +381,15 @@ impl TraceParts<'_> {
             horizons: Vec::new(),
         };
         let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
-        let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, fold)| Some((trial, fold.as_ref()?)));
+        let folds = self.trials.iter().zip(self.leave_one_out).filter_map(|(run, fold)| Some((run, fold.as_ref()?)));
         ErrorEntry {
-            kept_base: match (self.remainder.is_credible, self.keeps_base) {
-                (false, _) => Some(sentences::NOT_CREDIBLE.into()),
-                (true, keeps_base) => keeps_base.then(|| sentences::KEEPS_BASE.into()),
+            kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
+                (false, _) => Some(sentences::NO_NAMED_EFFECT_REASON.into()),
+                (true, keeps_base) => keeps_base.then(|| sentences::KEPT_BASE_REASON.into()),
             },
             identification: self.trials.iter().zip(self.identification).map(entry).collect(),
             validation: self.validation.0.iter().zip(self.validation.1).map(unfitted).collect(),
-            leave_one_out: left_out.map(unfitted).collect(),
+            leave_one_out: folds.map(unfitted).collect(),
         }
     }
 
@@ -407,7 +407,7 @@ impl TraceParts<'_> {
         let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
         let noise = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
             heading_sd_rad: (variance * record.full_readings as f64).sqrt(),
-            moment: law.colour.moment(*variance, self.problem.longest(), gain.abs()),
+            moment: law.colour.moment(*variance, self.problem.longest_duration(), gain.abs()),
         };
         law.variance.iter().zip(&self.problem.records).map(noise).collect()
     }
@@ -416,7 +416,7 @@ impl TraceParts<'_> {
         let law = &self.full.law;
         let entry = |(number, noise): (usize, HeadingNoise)| {
             let variance = law.variance[number];
-            let heading = law.colour.correlated.filter(|(kind, _)| kind.is_of_heading());
+            let heading = law.colour.correlated.filter(|(kind, _)| kind.is_heading_error());
             let (kind, correlation) = match noise.moment {
                 RandomMoment::OrnsteinUhlenbeck { correlation_s, .. } => (noise.moment.kind(), Some(correlation_s)),
                 other => (other.kind(), None),
@@ -425,7 +425,8 @@ impl TraceParts<'_> {
                 file: sentences::record_label(&self.trials[number]),
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
-                heading_correlation_s: heading.and_then(|(kind, _)| kind.correlation_time(self.problem.longest())),
+                heading_correlation_s: heading
+                    .and_then(|(law, _)| law.correlation_time(self.problem.longest_duration())),
                 heading_wander: heading
                     .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
                 moment: kind,
@@ -433,7 +434,7 @@ impl TraceParts<'_> {
                 moment_correlation_s: correlation,
                 waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
-                is_adequate: self.remainder.is_noise,
+                is_adequate: self.residual_analysis.is_noise,
                 rudder_sd_deg: self.rudder_noises[number].map(|error| to_deg(error.sd)),
                 outliers_s: self.outliers[number].clone(),
             }

@@ -186,7 +186,7 @@ pub fn with_rudder_noise(
     if errors.iter().all(Option::is_none) {
         return fulls;
     }
-    let unit = CorrelatedNoise::White.size(1.0, problem.longest()).powi(2);
+    let unit = CorrelatedNoise::White.size(1.0, problem.longest_duration()).powi(2);
     let least = |law: &NoiseLaw| {
         let intensities = errors.iter().map(|error| error.map_or(0.0, |error| error.intensity));
         let levels = intensities.zip(&law.variance).map(|(rudder, variance)| gain * gain * rudder / (unit * variance));

@@ -141,6 +141,6 @@ mod tests {
         let only = Selection::only(vec![id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| only.allows(id)), [true, false, false]);
         let both = Selection { excluded: vec![id("speed_loss")], ..usual };
-        assert_eq!(both.check().map_err(|error| error.found), Err(String::from("speed_loss")));
+        assert_eq!(both.check().map_err(|error| error.value), Err(String::from("speed_loss")));
     }
 }

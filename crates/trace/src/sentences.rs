@@ -1,4 +1,4 @@
-//! Sentences of a trace: headline, evidence, signature of the residual.
+//! Sentences of a trace: headline, evidence, peak of the residual.
 
 use document::names;
 use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
@@ -7,15 +7,15 @@ use trial::{Origin, Trial};
 
 use crate::comparison::BandCoverage;
 use crate::naming::EffectNaming;
-use crate::signature::Signature;
+use crate::residual_peak::ResidualPeak;
 
-/// Reason to keep the replay of the base.
-pub const KEEPS_BASE: &str = "adding effects does not improve the replay; the misfit looks like a random yaw moment, \
-                              which no replay can reproduce";
+/// Reason for a trace that keeps the replay of the base.
+pub const KEPT_BASE_REASON: &str = "adding effects does not improve the replay; the misfit looks like a random yaw \
+                                    moment, which no replay can reproduce";
 
-/// Reason to name no effect.
-pub const NOT_CREDIBLE: &str = "adding effects does not improve the replay, and no noise law describes the residual, \
-                                so no effect is named";
+/// Reason for a trace without named effects.
+pub const NO_NAMED_EFFECT_REASON: &str = "adding effects does not improve the replay, and no noise law describes the \
+                                          residual, so no effect is named";
 
 /// File name of a measured trial, or scenario of a simulated one.
 pub fn record_label(trial: &Trial) -> String {
@@ -51,10 +51,9 @@ const WINDOW: &str = "60";
 /// Minimum ratio of heading errors, after to before, that counts as unchanged.
 const UNCHANGED_SHARE: f64 = 0.95;
 
-/// Heading errors (deg) of some records, before and after, as root mean squares; `None` if no record has both.
+/// Heading errors (deg) of several records, before and after, as root mean squares; `None` if no record has both.
 fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) -> Option<[f64; 2]> {
-    let pairs: Vec<[f64; 2]> =
-        all.iter().filter_map(|record| Some([of(&record.before)?, of(&record.after)?])).collect();
+    let pairs: Vec<[f64; 2]> = all.iter().filter_map(|entry| Some([of(&entry.before)?, of(&entry.after)?])).collect();
     let mean = |when: usize| (pairs.iter().map(|pair| pair[when].powi(2)).sum::<f64>() / pairs.len() as f64).sqrt();
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
 }
@@ -125,13 +124,13 @@ impl Headline<'_> {
     /// Heading errors with and without the effects, of full replays and of windows.
     fn errors(&self) -> String {
         let condition = ["With the probable effects", "With it", "With them"][self.effects.len().min(2)];
-        let (others, kind) = match self.error.validation.is_empty() {
+        let (errors, kind) = match self.error.validation.is_empty() {
             true => (&self.error.leave_one_out, "records left out in turn"),
             false => (&self.error.validation, "held-out records"),
         };
         let ratios = |of: fn(&ErrorsEntry) -> Option<f64>| {
             let fitted = percent(mean_errors(&self.error.identification, of))?;
-            let unfitted = percent(mean_errors(others, of)).map(|ratio| format!("; {kind} {ratio}"));
+            let unfitted = percent(mean_errors(errors, of)).map(|ratio| format!("; {kind} {ratio}"));
             Some(fitted + &unfitted.unwrap_or_default())
         };
         let replays = ratios(whole).map_or_else(String::new, |ratios| format!(" ({ratios})"));
@@ -143,7 +142,7 @@ impl Headline<'_> {
         format!("{condition}{hulls} the heading error is {after}° instead of {before}°{replays}.{windows}")
     }
 
-    /// Sentence on effects that improve one-step predictions but not the full replay; empty for others.
+    /// Sentence on effects that improve one-step predictions but not the full replay; empty without them.
     fn one_step(&self) -> String {
         let errors = mean_errors(&self.error.identification, whole);
         if errors.is_none_or(|[before, after]| after <= UNCHANGED_SHARE * before) {
@@ -178,11 +177,11 @@ fn whole(errors: &ErrorsEntry) -> Option<f64> {
     Some(errors.heading_rmse_deg)
 }
 
-/// Evidence for a named effect.
+/// Sentence on the evidence for a named effect.
 pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) -> String {
-    let (id, form, only) = named.term;
+    let (id, form, record) = named.term;
     let effect = names::effect_form(id, form);
-    let place = only.map_or(String::new(), |number| format!(" in {}", trials[number].title()));
+    let place = record.map_or(String::new(), |number| format!(" in {}", trials[number].title()));
     let odds = match gain / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
         power if power < 0.0 => format!("{} times less probable", short(10f64.powf(-power))),
@@ -210,32 +209,32 @@ pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) 
     )
 }
 
-/// Evidence for waves: their standard deviation (rad) and frequency (rad/s).
+/// Sentence on waves: their standard deviation (rad) and frequency (rad/s).
 pub fn wave_evidence(sd: f64, frequency: f64) -> String {
     format!("Waves move the heading by {}° (standard deviation) at {} rad/s.", short(to_deg(sd)), short(frequency))
 }
 
-/// Location of the residual in the record `name`.
-pub fn signature_sentence(signature: &Signature, name: &str) -> String {
-    let ([from, to], share) = signature.span;
-    let ([low, high], largest) = signature.heading;
-    let line = signature.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
+/// Sentence on the peak of the residual of the record `name`.
+pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
+    let ([from, to], share) = peak.span;
+    let ([low, high], largest) = peak.heading;
+    let line = peak.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
         format!("; {:.0} % of its square has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
     });
     format!(
         "{name}: residual {}° rms; {:.0} % of its square between {from:.0} and {to:.0} s; largest ({}°) at headings \
          from {:.0}° to {:.0}°; {}° with the rudder to port, {}° with it to starboard{line}",
-        short(to_deg(signature.all)),
+        short(to_deg(peak.rms)),
         100.0 * share,
         short(to_deg(largest)),
         to_deg(low),
         to_deg(high),
-        short(to_deg(signature.side[0])),
-        short(to_deg(signature.side[1])),
+        short(to_deg(peak.side_rms[0])),
+        short(to_deg(peak.side_rms[1])),
     )
 }
 
-/// Coverage of a band that holds less than its nominal share.
+/// Clause on a band with less than its nominal coverage.
 pub fn band_sentence(name: &str, coverage: &BandCoverage) -> String {
     let [low, high] = coverage.interval.map(|end| 100.0 * end);
     let (inside, total, share) = (coverage.inside, coverage.total, 100.0 * coverage.share());

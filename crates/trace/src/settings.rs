@@ -89,7 +89,7 @@ pub enum TraceError {
     Base(#[from] IdentifyError),
     /// A requested effect is no candidate for these records.
     #[error("{} cannot be included as requested: {reason}", effect.as_str())]
-    Asked {
+    NoCandidate {
         /// Effect.
         effect: EffectId,
         /// Reason.

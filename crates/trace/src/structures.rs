@@ -10,7 +10,7 @@ use std::sync::Arc;
 use estimation::subsets::{RemovableTerm, conditional_mean};
 use rayon::prelude::*;
 
-use crate::candidates::{is_delay, is_variant};
+use crate::candidates::{is_alternative, is_delay};
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
@@ -69,11 +69,11 @@ pub fn weigh_structures(
         })
         .collect();
     let diverges = weighed.iter().any(|(_, full, structures)| {
-        full.law.is_random_moment() && structures.mean_square_of_ship() > MAX_RANDOM_RATIO * MAX_RANDOM_RATIO * base
+        full.law.is_random_moment() && structures.ship_mean_square() > MAX_RANDOM_RATIO * MAX_RANDOM_RATIO * base
     });
     let is_physical = |(_, full, structures): &(f64, FullModel, Structures)| {
         let max_ratio = if diverges { MAX_PHYSICAL_RATIO_IF_DIVERGENT } else { MAX_PHYSICAL_RATIO };
-        full.law.includes_model_error() && structures.mean_square_of_ship() / base < max_ratio * max_ratio
+        full.law.includes_model_error() && structures.ship_mean_square() / base < max_ratio * max_ratio
     };
     let physical = weighed.iter().any(is_physical);
     let mut kept: Vec<(f64, FullModel, Structures)> =
@@ -108,7 +108,7 @@ fn weigh(
         problem,
         weights: problem.weights(&full.law),
         full,
-        variants: candidates.iter().filter(|term| is_variant(term.effect.as_ref())).collect(),
+        variants: candidates.iter().filter(|term| is_alternative(term.effect.as_ref())).collect(),
         selection,
         rule,
         evaluated: BTreeMap::new(),
@@ -320,7 +320,7 @@ impl StructureSearch<'_> {
     /// Structures with their weights, the probabilities of the terms and their support.
     fn result(self) -> Structures {
         let terms = &self.full.fit.structure.terms;
-        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.only)).collect();
+        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record)).collect();
         let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
         let support = terms.iter().map(|term| term.name()).zip(support).collect();
         let visibility = self.visibility;

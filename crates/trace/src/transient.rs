@@ -16,7 +16,7 @@ const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0
 /// Spacing of the steps that are tried, as a share of the record.
 const STEP_SPACING: f64 = 1.0 / 80.0;
 
-/// Best start values of some moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step;
+/// Best start values of moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step;
 /// `None` if the precision of the fit is singular.
 pub fn start_values(
     problem: &FittedRecords,
@@ -41,7 +41,7 @@ fn place(
     factor: &Cholesky<f64, Dyn>,
     explained: &DVector<f64>,
 ) -> Option<Vec<f64>> {
-    let number = term.only.unwrap_or(0);
+    let number = term.record.unwrap_or(0);
     let record = &problem.records[number];
     let block = linear.blocks[number].white(number, weights);
     let (a, b) = (fit.theta[0], fit.theta[1]);

@@ -1,14 +1,14 @@
 //! Observer of the leave-one-out folds of a long analysis.
 
-/// Observer of an analysis of several records: its leave-one-out folds take long after the main result is known.
+/// Observer of the leave-one-out folds of an analysis of several records, which follow its main result.
 pub trait Watcher: Sync {
-    /// Start of `_count` leave-one-out folds, after the main result is known.
+    /// Start of `_count` leave-one-out folds, after the main result.
     fn begin_folds(&self, _count: usize) {}
 
     /// End of one fold.
     fn end_fold(&self) {}
 
-    /// `true` if the folds should stop; [`Analysis::left_out`](crate::Analysis::left_out) is then empty.
+    /// `true` if the folds should stop; [`Analysis::leave_one_out`](crate::Analysis::leave_one_out) is then empty.
     fn is_asked_to_stop(&self) -> bool {
         false
     }

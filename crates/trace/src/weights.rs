@@ -25,7 +25,7 @@ impl NoiseLaw {
 
     /// `true` if the law includes a random yaw moment.
     pub fn is_random_moment(&self) -> bool {
-        self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
+        self.colour.correlated.is_some_and(|(kind, _)| !kind.is_heading_error())
     }
 
     /// `true` if two laws have the same kind and similar variances.

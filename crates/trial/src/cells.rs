@@ -194,12 +194,12 @@ mod tests {
 
     #[test]
     fn the_separator_with_the_most_known_names_wins() {
-        let known = |cells: &[&str]| cells.iter().filter(|cell| cell.starts_with("k_")).count();
-        assert_eq!(detect_separator("k_a [x, y];k_b", known), Separator::Semicolon);
-        assert_eq!(detect_separator("k_a,k_b,other name", known), Separator::Comma);
-        assert_eq!(detect_separator("k_a k_b", known), Separator::Blank);
-        assert_eq!(detect_separator("k_a\tk_b", known), Separator::Tab);
-        assert_eq!(detect_separator("nothing,known", known), Separator::Comma);
+        let score = |cells: &[&str]| cells.iter().filter(|cell| cell.starts_with("k_")).count();
+        assert_eq!(detect_separator("k_a [x, y];k_b", score), Separator::Semicolon);
+        assert_eq!(detect_separator("k_a,k_b,other name", score), Separator::Comma);
+        assert_eq!(detect_separator("k_a k_b", score), Separator::Blank);
+        assert_eq!(detect_separator("k_a\tk_b", score), Separator::Tab);
+        assert_eq!(detect_separator("nothing,known", score), Separator::Comma);
     }
 
     #[test]

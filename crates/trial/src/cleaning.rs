@@ -12,8 +12,8 @@ use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::wording::{counted, rounded_to_thousandth};
 
-/// Minimum rudder angle of an impossible reading, rad.
-pub(crate) const IMPOSSIBLE_RUDDER: f64 = 1.6;
+/// Minimum magnitude of an impossible rudder angle, rad.
+pub(crate) const MIN_IMPOSSIBLE_RUDDER_RAD: f64 = 1.6;
 
 /// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not a single reading.
 const MAX_RUDDER: f64 = 1.05;
@@ -33,7 +33,7 @@ const MIN_READ_SHARE: f64 = 0.8;
 /// Minimum share of changes in step with the rhythm of a channel.
 const MIN_IN_STEP_SHARE: f64 = 0.97;
 
-/// Maximum probability that separate movements share a rhythm by chance; a movement at a steady rate has its own.
+/// Maximum probability that separate movements share a rhythm by chance; a steady movement has a rhythm.
 const MAX_CHANCE: f64 = 2e-3;
 
 /// Minimum number of rows of a frozen heading.
@@ -82,14 +82,13 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
 /// Omits rows with an impossible rudder angle, if they are few.
 fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
-    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > IMPOSSIBLE_RUDDER).collect();
-    let largest = rudder.iter().map(|x| x.abs()).filter(|x| *x <= IMPOSSIBLE_RUDDER).fold(0.0, f64::max);
+    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > MIN_IMPOSSIBLE_RUDDER_RAD).collect();
+    let largest = rudder.iter().map(|x| x.abs()).filter(|x| *x <= MIN_IMPOSSIBLE_RUDDER_RAD).fold(0.0, f64::max);
     if wild.is_empty() || wild.len() as f64 > MAX_IMPOSSIBLE_SHARE * rudder.len() as f64 || largest > MAX_RUDDER {
         return None;
     }
     let times = reject(Channel::Rudder, &columns.time, rudder, &wild, rejected);
-    let largest =
-        wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
+    let largest = wild.iter().map(|&k| rudder[k]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
     let mut keep = vec![true; columns.time.len()];
     wild.iter().for_each(|&row| keep[row] = false);
     columns.retain(&keep);
@@ -112,7 +111,7 @@ fn ordinal(number: usize) -> String {
     format!("{number}{ending}")
 }
 
-/// Adds the readings of some rows to `rejected` and returns up to six of their times, for a message.
+/// Adds the readings of these rows to `rejected` and returns up to six of their times, for a message.
 fn reject(
     channel: Channel,
     time: &[f64],
@@ -122,8 +121,7 @@ fn reject(
 ) -> String {
     const SHOWN: usize = 6;
     rejected.extend(rows.iter().map(|&row| RejectedReading { channel, time: time[row], value: values[row] }));
-    let mut shown: Vec<String> =
-        rows.iter().take(SHOWN).map(|&row| rounded_to_thousandth(time[row]).to_string()).collect();
+    let mut shown: Vec<String> = rows.iter().take(SHOWN).map(|&k| rounded_to_thousandth(time[k]).to_string()).collect();
     shown.extend((rows.len() > SHOWN).then(|| String::from("…")));
     format!("at t = {} s", shown.join(", "))
 }
@@ -140,7 +138,7 @@ impl Rhythm {
     ///
     /// A rudder of whole degrees that moves at a steady rate also changes in a rhythm, but with a different phase in
     /// every movement. Separate movements therefore must agree.
-    fn of(values: &[f64]) -> Option<Self> {
+    fn from_values(values: &[f64]) -> Option<Self> {
         let changed = |row: &usize| {
             let pair = [values[*row - 1], values[*row]];
             pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
@@ -194,7 +192,7 @@ pub(crate) fn interpolate_rows(time: &[f64], values: &mut [f64], from: usize, to
 fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
-    let rhythm = Rhythm::of(rudder)?;
+    let rhythm = Rhythm::from_values(rudder)?;
     let new: Vec<usize> = (0..rudder.len()).filter(|&row| rhythm.is_new(row)).collect();
     for pair in new.windows(2) {
         interpolate_rows(time, rudder, pair[0], pair[1]);
@@ -208,7 +206,7 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
 /// Sets the repetitions of a channel to missing.
 fn blank_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
-    let rhythm = Rhythm::of(values)?;
+    let rhythm = Rhythm::from_values(values)?;
     let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
     if left < crate::record::Trial::MIN_ROWS {
         return None;

@@ -1,7 +1,7 @@
 //! Stamps of date and time as written by loggers and spreadsheets, and the seconds between them. The notations and the
 //! calendar are here; time columns are chosen in [`crate::reader`].
 //!
-//! The calendar is that of `chrono`. No library reads all these notations: jiff and chrono read ISO 8601 and one given
+//! Calendar: `chrono`. No library reads all these notations: jiff and chrono read ISO 8601 and one given
 //! notation at a time, no decimal commas, and no date whose month is determined later in the file.
 
 use chrono::NaiveDate;
@@ -232,7 +232,7 @@ impl Stamp {
         Self { date: date.date, ..time }
     }
 
-    /// Stamp from a day since 1970-01-01, if there is one, and a second of the day (UTC).
+    /// Stamp from a day since 1970-01-01 (`None` without a date) and a second of the day (UTC).
     pub fn new(day: Option<i64>, second: f64) -> Self {
         let fraction = second.fract() != 0.0;
         Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
@@ -278,7 +278,7 @@ impl Clock {
     }
 
     /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0.
-    pub fn time_of(&self, stamp: &Stamp) -> Option<f64> {
+    pub fn record_time(&self, stamp: &Stamp) -> Option<f64> {
         let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
         match stamp.date {

@@ -14,10 +14,10 @@ pub const MIN_DEPTH_DRAUGHTS: f64 = 4.0;
 pub const MAX_BEAUFORT: u8 = 5;
 /// Maximum sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const MAX_SEA_STATE: u8 = 4;
-/// Tolerance of the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
-pub const DRAUGHT_TOLERANCE: f64 = 0.05;
+/// Maximum deviation from the full-load draught, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
+pub const MAX_DRAUGHT_DEVIATION_SHARE: f64 = 0.05;
 /// Maximum interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
-pub const MAX_INTERVAL_S: f64 = 20.0;
+pub const MAX_READING_INTERVAL_S: f64 = 20.0;
 
 /// Loading condition at the trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -109,8 +109,8 @@ pub struct Conditions {
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Shortcoming {
     /// Undeclared condition.
-    #[error("{what} is not declared; required: {asked}")]
-    Unknown { what: &'static str, asked: &'static str },
+    #[error("{condition} is not declared; required: {requirement}")]
+    Unknown { condition: &'static str, requirement: &'static str },
     /// Water depth below the minimum.
     #[error("the water is {draughts:.1} mean draughts deep; required: more than {MIN_DEPTH_DRAUGHTS}")]
     Depth { draughts: f64 },
@@ -121,7 +121,7 @@ pub enum Shortcoming {
     #[error("the sea state is {state}; required: at most {MAX_SEA_STATE}")]
     Sea { state: u8 },
     /// Median time between rows above the maximum interval.
-    #[error("readings are {seconds:.0} s apart; required: at most {MAX_INTERVAL_S} s")]
+    #[error("readings are {seconds:.0} s apart; required: at most {MAX_READING_INTERVAL_S} s")]
     Interval { seconds: f64 },
     /// Loading other than full; her draught as a share of the draught at full load, if both are declared.
     #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]
@@ -207,7 +207,7 @@ impl Conditions {
 
     /// Loading condition: as declared, else from the draughts with a tolerance of 5 %.
     pub fn loading(&self) -> Option<Loading> {
-        let is_full = |share: f64| (share - 1.0).abs() <= DRAUGHT_TOLERANCE;
+        let is_full = |share: f64| (share - 1.0).abs() <= MAX_DRAUGHT_DEVIATION_SHARE;
         let by_draught = |share: f64| if is_full(share) { Loading::Full } else { Loading::Partial };
         self.declared_loading.or_else(|| self.draught_share().map(by_draught))
     }
@@ -226,7 +226,7 @@ impl Conditions {
     /// Deviations from the conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared. Current and
     /// speed are not checked.
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
-        let unknown = |what, asked| Some(Shortcoming::Unknown { what, asked });
+        let unknown = |condition, requirement| Some(Shortcoming::Unknown { condition, requirement });
         let depth = match self.depth_in_draughts() {
             None => unknown("the water depth in draughts", "more than 4 mean draughts"),
             Some(draughts) => (draughts <= MIN_DEPTH_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
@@ -245,7 +245,7 @@ impl Conditions {
             (None, _) => unknown("the loading", "full load with a tolerance of 5 % in draught"),
             (Some(Loading::Partial), _) => Some(Shortcoming::Load { draught }),
             (Some(Loading::Full), share) => share
-                .filter(|share| (share - 1.0).abs() > DRAUGHT_TOLERANCE)
+                .filter(|share| (share - 1.0).abs() > MAX_DRAUGHT_DEVIATION_SHARE)
                 .map(|draught| Shortcoming::Contradiction { draught }),
         };
         let trim = self.trim.filter(|trim| *trim != 0.0).map(|trim| Shortcoming::Trim { trim });

@@ -1,5 +1,5 @@
 //! Guards around third-party decoders, which trust the sizes stated in a file and panic on some damaged files. Each
-//! reader sets its own limits on the stated sizes.
+//! reader sets limits on the stated sizes.
 
 use std::cell::Cell;
 use std::io;

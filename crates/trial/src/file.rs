@@ -91,7 +91,7 @@ pub fn display_path(path: &Path) -> &Path {
 
 /// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
-/// Fails if there is no such file or its size exceeds that of its kind. A file of unknown size fails in reading,
+/// Fails if there is no such file or it is larger than its kind allows. A file of unknown size fails in reading,
 /// with an error that is converted back to a [`FileError`].
 pub fn open(path: &Path, kind: FileKind) -> Result<LimitedReader<'static>, FileError> {
     if path == Path::new(STDIN) {

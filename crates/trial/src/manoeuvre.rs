@@ -132,7 +132,7 @@ pub struct OrderStep {
 }
 
 /// Change of heading of the initial turning test, rad.
-pub const INITIAL_TURN: f64 = 10.0 * DEGREE;
+pub const INITIAL_TURNING_CHANGE_RAD: f64 = 10.0 * DEGREE;
 
 /// Changes of heading in a Williamson turn, rad: to the first side until the rudder is reversed, then to the opposite
 /// side until it is put amidships.
@@ -157,7 +157,7 @@ impl Manoeuvre {
         Self::Replay { file: String::new(), rudder: Some(rudder) }
     }
 
-    /// The same zig-zag until an execute, counted from 1; n executes give n − 2 complete overshoots.
+    /// Zig-zag that ends at an execute, counted from 1; n executes give n − 2 complete overshoots.
     pub fn until_execute(mut self, number: usize) -> Self {
         if let Self::ZigZag { executes, .. } = &mut self {
             *executes = Some(number);
@@ -165,7 +165,7 @@ impl Manoeuvre {
         self
     }
 
-    /// The same zig-zag or turning circle until a time after its first execute, s.
+    /// Zig-zag or turning circle that ends a time after its first execute, s.
     pub fn lasting(mut self, time: f64) -> Self {
         if let Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. } = &mut self {
             *duration = Some(time);
@@ -202,7 +202,7 @@ impl Manoeuvre {
             }
             (Self::TurningCircle { .. }, _) => (Never, None, "recording.duration-s"),
             (Self::InitialTurning { side, .. }, _) => {
-                (Deviation { side: side.sign(), angle: INITIAL_TURN }, None, "manoeuvre")
+                (Deviation { side: side.sign(), angle: INITIAL_TURNING_CHANGE_RAD }, None, "manoeuvre")
             }
             (Self::PullOut { hold, .. }, 1) => (Time(*hold), Some(0.0), "manoeuvre.pull-out.hold-s"),
             (Self::PullOut { duration, .. }, _) => (Time(*duration), None, "manoeuvre.pull-out.duration-s"),
@@ -278,7 +278,7 @@ impl Manoeuvre {
         }
     }
 
-    /// The same manoeuvre with its first execute to a side; a replay and a spiral are unchanged.
+    /// Manoeuvre with its first execute to the given side; a replay and a spiral are unchanged.
     pub fn with_first_side(mut self, first_side: Side) -> Self {
         match &mut self {
             Self::ZigZag { first: side, .. }

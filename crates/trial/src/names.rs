@@ -183,7 +183,7 @@ fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
     Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
 }
 
-/// The same meaning with a unit; `None` if the quantity cannot have it.
+/// Meaning of a column with a unit; `None` if the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => {

@@ -128,7 +128,7 @@ const MIN_RUDDER_RANGE_DEG: f64 = 4.0;
 const MIN_RESPONSE_DEG: f64 = 1.0;
 
 /// Bounds of the mean rate of turn of ships and models in a manoeuvre, deg/s.
-pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
+pub(crate) const MEAN_RATE_RANGE_DEG_S: [f64; 2] = [0.01, 15.0];
 
 /// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more
 /// reversals.
@@ -291,11 +291,11 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
         return None;
     }
     let rate_deg_s = to_deg(mean_rate(trial.time(), trial.heading()));
-    (!(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s)).then(|| {
+    (!(MEAN_RATE_RANGE_DEG_S[0]..MEAN_RATE_RANGE_DEG_S[1]).contains(&rate_deg_s)).then(|| {
         WarningCode::TimeUnit.warning(format!(
             "the ship turns at {rate_deg_s:.2e}°/s on average, expected {} to {}°/s for a ship or model in a manoeuvre: \
              check the unit of the time (t_s, t_ms, t_min)",
-            MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
+            MEAN_RATE_RANGE_DEG_S[0], MEAN_RATE_RANGE_DEG_S[1]
         ))
     })
 }
@@ -303,7 +303,7 @@ fn rate_of_turn(trial: &Trial) -> Option<Warning> {
 /// Maximum interval between two headings without a missing heading, usual intervals.
 const MAX_INTERVAL: f64 = 1.5;
 
-/// Warning of missing headings with their maximum gap; rejected readings have a warning of their own.
+/// Warning of missing headings with their maximum gap; rejected readings have a separate warning.
 fn missing_headings(trial: &Trial) -> Option<Warning> {
     let (time, read) = (trial.time(), trial.observed_rows().collect::<Vec<_>>());
     let usual = upper_median(read.windows(2).map(|rows| time[rows[1]] - time[rows[0]]))?;

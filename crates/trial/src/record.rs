@@ -13,7 +13,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{Conditions, DeclaredWeather, MAX_INTERVAL_S, Shortcoming};
+use crate::conditions::{Conditions, DeclaredWeather, MAX_READING_INTERVAL_S, Shortcoming};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
@@ -94,11 +94,11 @@ pub enum TrialError {
     #[error("the record has no {0}")]
     Missing(&'static str),
     /// Columns of different length.
-    #[error("{channel:?} has {found} values, time has {expected}")]
-    Length { channel: Channel, found: usize, expected: usize },
+    #[error("{channel:?} has {rows} values, time has {expected}")]
+    Length { channel: Channel, rows: usize, expected: usize },
     /// Fewer rows than the minimum.
-    #[error("a record needs at least {needed} rows with heading and rudder; this record has {found}")]
-    TooShort { needed: usize, found: usize },
+    #[error("a record needs at least {needed} rows with heading and rudder; this record has {rows}")]
+    TooShort { needed: usize, rows: usize },
     /// Time that does not increase or is not finite.
     #[error("time must increase: row {row} has {time} s after {before} s")]
     Time { row: usize, before: f64, time: f64 },
@@ -147,9 +147,7 @@ fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
             TrialError::Rudder { row }
         }
         SignalError::Point { index: row, before, time, .. } => TrialError::Time { row, before, time },
-        SignalError::Empty | SignalError::Lengths { .. } => {
-            TrialError::TooShort { needed: Trial::MIN_ROWS, found: rows }
-        }
+        SignalError::Empty | SignalError::Lengths { .. } => TrialError::TooShort { needed: Trial::MIN_ROWS, rows },
     })
 }
 
@@ -165,7 +163,7 @@ impl Trial {
         let Columns { time, mut channels, unknown } = columns;
         for (&channel, values) in &channels {
             if values.len() != time.len() {
-                return Err(TrialError::Length { channel, found: values.len(), expected: time.len() });
+                return Err(TrialError::Length { channel, rows: values.len(), expected: time.len() });
             }
         }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
@@ -187,7 +185,7 @@ impl Trial {
         }
         let headings = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
         if headings < Self::MIN_ROWS {
-            return Err(TrialError::TooShort { needed: Self::MIN_ROWS, found: headings });
+            return Err(TrialError::TooShort { needed: Self::MIN_ROWS, rows: headings });
         }
         Ok(Self {
             name,
@@ -348,7 +346,7 @@ impl Trial {
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
         let mut shortcomings = self.conditions.shortcomings();
         let seconds = self.sampling_period();
-        shortcomings.extend((seconds > MAX_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
+        shortcomings.extend((seconds > MAX_READING_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
         shortcomings
     }
 

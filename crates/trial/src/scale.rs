@@ -121,7 +121,7 @@ pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
     let word = match largest {
         Some(difference) if difference.abs() > SIGNIFICANT_SDS => Scaling::DoesNotScale,
         Some(_) if is_resolved => Scaling::Scales,
-        _ => Scaling::CannotBeTold,
+        _ => Scaling::Undecided,
     };
     (largest, word)
 }
@@ -132,12 +132,12 @@ mod tests {
     use crate::channel::Channel;
     use crate::record::{Columns, Origin};
 
-    fn record(name: &str, own: Option<(f64, f64)>) -> Trial {
+    fn record(name: &str, scale: Option<(f64, f64)>) -> Trial {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let channels = [(Channel::Rudder, vec![0.1; 20]), (Channel::Heading, time.clone())].into();
         let origin = Origin::Measured { file: name.into(), sha256: String::new() };
         let trial = Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
-        match own {
+        match scale {
             Some((length, speed)) => trial.with_particulars(Particulars { length, speed }),
             None => trial,
         }
@@ -169,12 +169,12 @@ mod tests {
         let (difference, word) = compare_scales(&[of(1.0, 0.03), of(1.05, 0.04)]);
         assert!(word == Scaling::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
         assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
-        assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::CannotBeTold);
-        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]), (None, Scaling::CannotBeTold));
+        assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::Undecided);
+        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]), (None, Scaling::Undecided));
         // One of three estimates without an error: the verdict is that of the two others, except agreement of all
         // three.
         let three = [of(1.0, 0.01), Quantity::without_uncertainty(1.0), of(1.01, 0.01)];
-        assert_eq!(compare_scales(&three).1, Scaling::CannotBeTold);
+        assert_eq!(compare_scales(&three).1, Scaling::Undecided);
         let (difference, word) = compare_scales(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
         assert!(difference.is_some_and(|d| (d + 0.11 / 0.01 / 2f64.sqrt()).abs() < 1e-9), "{difference:?}");
         assert_eq!(word, Scaling::DoesNotScale);

@@ -24,7 +24,7 @@ pub use crate::sidecar_keys::{SidecarKey, keys, schema};
 use crate::wording::shortened;
 
 /// Kind of file of a sidecar; in use are up to a hundred lines.
-pub const SIDECAR: FileKind = FileKind { name: "a sidecar", max_bytes: 1 << 20 };
+pub const SIDECAR_FILE: FileKind = FileKind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ pub(crate) enum ColumnReference {
     Index(usize),
     /// Name in the header.
     Name(String),
-    /// New column, computed from others.
+    /// New column, computed from existing columns.
     Formula(ColumnFormula),
 }
 
@@ -87,9 +87,9 @@ impl Sidecar {
 
     /// Reads and checks a sidecar.
     ///
-    /// Fails if the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.
+    /// Fails if the file cannot be read or is larger than [`SIDECAR_FILE`], and as [`parse`](Self::parse) does.
     pub fn load(file: &Path) -> Result<Self, SidecarError> {
-        let text = read_text(file, SIDECAR).map_err(|error| SidecarError {
+        let text = read_text(file, SIDECAR_FILE).map_err(|error| SidecarError {
             file: file.to_path_buf(),
             line: None,
             problem: SidecarProblem::File(error),

@@ -46,15 +46,15 @@ fn stored(name: &str) -> Vec<Vec<u8>> {
 
 /// First block of rows.
 pub(super) fn rows() -> Vec<Vec<u8>> {
-    stored(&format!("{}/{}.parquet", files::ROWS, Block { cell: 0, number: 0 }))
+    stored(&format!("{}/{}.parquet", files::ROWS_FOLDER, Block { cell: 0, number: 0 }))
 }
 
 pub(super) fn cells() -> Vec<Vec<u8>> {
-    stored(files::DESIGN)
+    stored(files::DESIGN_FILE)
 }
 
 pub(super) fn manifest() -> Vec<Vec<u8>> {
-    stored(files::MANIFEST)
+    stored(files::MANIFEST_FILE)
 }
 
 /// Packed table and packed log of sentences.

@@ -109,7 +109,7 @@ pub fn stamp(data: &[u8]) -> bool {
         let clock = stamps.clock().expect("a stamp was read");
         assert_eq!(clock.time_of_day_at(seconds).len(), 8, "a time of day");
         assert!(clock.date_at(seconds).is_none_or(|date| date.len() <= 32), "a date");
-        assert!(clock.time_of(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
+        assert!(clock.record_time(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
         read = true;
     }
     read
@@ -210,7 +210,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
 /// Target of a manifest, compared with another manifest and resolved as the scenario that it contains.
 pub fn manifest(data: &[u8]) -> bool {
     scratch(|folder| {
-        let path = folder.join(files::MANIFEST);
+        let path = folder.join(files::MANIFEST_FILE);
         std::fs::write(&path, data).expect("the scratch folder is writable");
         let manifest = match Manifest::read(&path) {
             Ok(manifest) => manifest.expect("it was just written"),
@@ -290,7 +290,7 @@ fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, mea
     let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
     let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
     let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();
-    R::action(formula).yaw_acceleration(&values, &[], &now)
+    R::effect_equations(formula).yaw_acceleration(&values, &[], &now)
 }
 
 /// Assertion that every method gives an estimate or a reason.

@@ -119,7 +119,7 @@ fn lines() -> Vec<Line> {
 const NOISE: f64 = 0.01;
 
 /// Effort of fits that run to convergence.
-const EFFORT: StoppingRule = StoppingRule { steps: 60, negligible: 1e-4 };
+const EFFORT: StoppingRule = StoppingRule { max_steps: 60, min_decrease: 1e-4 };
 
 /// Residual of the base (deg), K (1/s), T (s); residual (deg) and parameters of the effect after it is added.
 fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
@@ -134,7 +134,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let replay = identify::replay::replay(&trial, &base).expect("finite");
     let trials = [trial];
     let time = candidates::ship_time(&trials, base.K_over_T);
-    let problem = FittedRecords::new(vec![PreparedRecord::whole(&trials[0])], base.inverse_T, time);
+    let problem = FittedRecords::new(vec![PreparedRecord::unaveraged(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
     let all = candidates::all(&problem.records, &trials, time, &selection);
     let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());

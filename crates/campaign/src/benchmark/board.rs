@@ -96,9 +96,9 @@ pub(super) struct Scores {
 }
 
 impl Scores {
-    pub(super) fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
+    pub(super) fn from_cases(cases: &[&BenchCase], methods: &[String]) -> Self {
         let of_method = |method: &String| {
-            let scores: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
+            let scores: Option<Vec<f64>> = cases.iter().map(|case| case.method_score(method)).collect();
             Some((method.clone(), scores?))
         };
         let methods: Vec<(String, Vec<f64>)> = methods.iter().filter_map(of_method).collect();
@@ -118,7 +118,7 @@ impl Scores {
 }
 
 fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
-    let scores = Scores::of(cases, methods);
+    let scores = Scores::from_cases(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {
         let [median, high] = scores.figures(|cases| median_and_p90(cases.iter().map(|&case| values[case]).collect()));
@@ -174,7 +174,7 @@ pub struct SetLine {
 pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
     let scored = cases.iter().filter(|case| case.task.score().is_some());
     let line = |((task, set), group): ((BenchTask, &str), Vec<&BenchCase>)| {
-        let scores = Scores::of(&group, methods);
+        let scores = Scores::from_cases(&group, methods);
         let figures = |method: &String| {
             let (_, values) = scores.methods.iter().find(|(name, _)| name == method)?;
             let failed = values.iter().filter(|score| score.is_infinite()).count();
@@ -227,7 +227,7 @@ mod tests {
     fn cases_of_one_trial_are_drawn_together() {
         let cases: Vec<BenchCase> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
         let all: Vec<&BenchCase> = cases.iter().collect();
-        assert_eq!(Scores::of(&all, &[]).clusters, [vec![0, 1], vec![2, 3, 4]]);
+        assert_eq!(Scores::from_cases(&all, &[]).clusters, [vec![0, 1], vec![2, 3, 4]]);
         assert_eq!(boards(&cases, &["a".to_owned()], "a")[0].standings[0].median.ci95, None, "two clusters");
     }
 }

@@ -180,7 +180,7 @@ impl Naming {
         }
     }
 
-    /// Correctness of the named groups, if `missing` is the one missing effect, or none.
+    /// Correctness of the named groups for the `missing` effect, or for none.
     pub fn from_named_effects(missing: Option<&str>, named: &[Vec<String>]) -> Self {
         let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
         let holder = named.iter().find(|group| group.iter().any(|id| id == missing));
@@ -202,12 +202,12 @@ impl BenchCase {
     }
 
     /// Ratio of the scores of two methods; `None` if one of them takes no part.
-    pub fn ratio_of(&self, method: &str, reference: &str) -> Option<f64> {
-        Some(ratio(self.score_of(method)?, self.score_of(reference)?))
+    pub fn score_ratio(&self, method: &str, reference: &str) -> Option<f64> {
+        Some(ratio(self.method_score(method)?, self.method_score(reference)?))
     }
 
     /// Score of a method: infinite if it failed, `None` if it takes no part.
-    pub fn score_of(&self, method: &str) -> Option<f64> {
+    pub fn method_score(&self, method: &str) -> Option<f64> {
         let answer = self.answers.iter().find(|answer| answer.method == method)?;
         Some(answer.score.unwrap_or(f64::INFINITY))
     }

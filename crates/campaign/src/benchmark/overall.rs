@@ -24,7 +24,7 @@ pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking
     let fields = by_task_and_study(cases, is_prediction);
     let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
     // Every method takes part in every prediction.
-    let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::of(cases, methods)).collect();
+    let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::from_cases(cases, methods)).collect();
     let first = of_boards.first()?;
     let clusters = of_boards.iter().map(|board| board.clusters).sum();
     let standing = |(place, method): (usize, &String)| {
@@ -47,8 +47,8 @@ struct MeanRanks {
 }
 
 impl MeanRanks {
-    fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
-        let Scores { clusters, methods, ranks } = Scores::of(cases, methods);
+    fn from_cases(cases: &[&BenchCase], methods: &[String]) -> Self {
+        let Scores { clusters, methods, ranks } = Scores::from_cases(cases, methods);
         let means = |cases: &[usize]| -> Vec<f64> {
             (0..methods.len()).map(|place| mean(cases.iter().map(|&case| ranks[case][place]))).collect()
         };

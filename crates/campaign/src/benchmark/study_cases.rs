@@ -69,7 +69,7 @@ impl SteeredRecord {
     }
 }
 
-/// Task of predicting a record from others; `None` if it repeats a fitted record, or if turns are fitted.
+/// Task of predicting a record from the fitted records; `None` if it repeats a fitted record, or if turns are fitted.
 fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchTask> {
     let fitted: Vec<_> = fitted.iter().map(|record| record.zig_zag).collect::<Option<_>>()?;
     let Some((angles, first)) = judge.zig_zag else { return Some(BenchTask::Circle) };
@@ -157,7 +157,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
         let fitted_names: Vec<String> = fitted.iter().map(|steered| steered.record.name.clone()).collect();
         for (task, scored) in questions.tasks(&fitted, judge) {
             let trial = questions.is_simulated.then_some(replicate);
-            // A fit recurs with every validation record; its own replay is scored once.
+            // A fit recurs with every validation record; the replay of the fitted record is scored once.
             if !asked.insert((questions.set.clone(), task, trial, fitted_names.clone(), scored.clone())) {
                 continue;
             }
@@ -197,7 +197,7 @@ fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
 fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
-        let trials = scenario.max_trials_of_cell(place);
+        let trials = scenario.max_cell_trials(place);
         let records = cell.records.into_iter().map(|steered| steered.record);
         match sets.iter_mut().find(|set| set.name == cell.set) {
             Some(set) => {

@@ -8,8 +8,7 @@ use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use trial::Trial;
 
-/// Compass error: white noise of standard deviation `white` (rad), and a stationary first-order Gauss–Markov process
-/// (rad).
+/// Compass error (rad): white noise of standard deviation `white`, and a stationary first-order Gauss–Markov process.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompassError {
     pub white: f64,

@@ -178,7 +178,7 @@ fn joined<T>(all: &[T], write: impl Fn(&T) -> String) -> Cow<'static, str> {
     all.iter().map(write).collect::<Vec<_>>().join("+").into()
 }
 
-/// List from a text. Fails if an entry is invalid, which the message calls `what`.
+/// List from a text. Fails with a message on `entries` if an entry is invalid.
 fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
     let parts = text.split('+').filter(|part| !part.is_empty());
     parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))

@@ -88,7 +88,7 @@ impl From<String> for Damage {
 }
 
 /// SHA-256 of columns.
-fn sha256_of(columns: &[Values]) -> String {
+fn values_hash(columns: &[Values]) -> String {
     let mut digest = Sha256::new();
     let mut bytes = Vec::new();
     for column in columns {
@@ -110,8 +110,8 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
         properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
     }
     let mut file = SerializedFileWriter::new(Vec::new(), layout.schema(), Arc::new(properties.build()))?;
-    let columns: Vec<Values> = layout.columns_of(rows).collect();
-    let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: sha256_of(&columns) };
+    let columns: Vec<Values> = layout.value_columns(rows).collect();
+    let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: values_hash(&columns) };
     parquet_table::write_group(&mut file, columns)?;
     let label = serde_json::to_string(&label).expect("texts and numbers");
     let sha256 = hex(&Sha256::digest(&label));
@@ -159,7 +159,7 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
     let group = file.get_row_group(0).map_err(message)?;
     let column = |place: usize| values(&mut group.get_column_reader(place).map_err(message)?, rows);
     let columns: Vec<Values> = (0..group.num_columns()).map(column).collect::<Result<_, String>>()?;
-    if sha256_of(&columns) != values_sha256 {
+    if values_hash(&columns) != values_sha256 {
         return Err("the SHA-256 of its values differs from its label".to_owned().into());
     }
     Ok(layout.rows_from(columns, rows)?)

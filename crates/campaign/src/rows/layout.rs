@@ -69,8 +69,7 @@ impl RowLayout {
     fn columns(&self) -> impl Iterator<Item = (String, ColumnSource<'_>)> {
         let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), ColumnSource::Fixed(column)));
         let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
-        let draws =
-            self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), ColumnSource::Draw(index)));
+        let draws = self.draws.iter().enumerate().map(|(at, key)| (format!("draw.{key}"), ColumnSource::Draw(at)));
         let records = self.records.iter().flat_map(|records| {
             let fitted: fn(&JudgedRecord) -> Option<&str> = |record| Some(record.fitted.as_str());
             let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.validation.as_deref();
@@ -102,7 +101,7 @@ impl RowLayout {
         parquet_table::schema(fields.collect())
     }
 
-    /// `true` if the values of a column repeat often enough for dictionary encoding; those of estimates do not.
+    /// `true` if the values of a column repeat often enough for dictionary encoding, unlike estimates.
     pub(super) fn is_dictionary_encoded(name: &str) -> bool {
         let text = [
             "method",
@@ -122,7 +121,7 @@ impl RowLayout {
     }
 
     /// Columns of rows, in order.
-    pub(super) fn columns_of<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
+    pub(super) fn value_columns<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
         self.columns().map(move |(_, source)| match source {
             ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
                 Access::Count(get, _) => Values::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),
@@ -132,7 +131,7 @@ impl RowLayout {
                     Values::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
                 }
             },
-            ColumnSource::Axis(_, points) => points.of_cells(rows),
+            ColumnSource::Axis(_, points) => points.for_rows(rows),
             ColumnSource::Record(of, records) => record_names(of, records, rows),
             ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
@@ -165,7 +164,7 @@ impl RowLayout {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
                 // Axes and records follow from cell and replicate; other values belong to another design.
-                (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
+                (ColumnSource::Axis(_, points), values) if points.for_rows(&rows) == values => {}
                 (ColumnSource::Record(of, records), values) if record_names(of, records, &rows) == values => {}
                 (ColumnSource::Record(..), _) => return Err("a row names other records than its trial has".to_owned()),
                 (ColumnSource::Axis(name, _), _) => {
@@ -214,7 +213,7 @@ impl Values {
     }
 
     /// Values by row, from values by cell; `None` for a missing cell.
-    fn of_cells(&self, rows: &[StudyRow]) -> Self {
+    fn for_rows(&self, rows: &[StudyRow]) -> Self {
         fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {
             rows.iter().map(|row| values.get(row.cell as usize)?.clone()).collect()
         }

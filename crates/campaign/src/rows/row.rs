@@ -72,7 +72,7 @@ pub struct LocatedMoment {
     pub alternatives: Vec<Box<str>>,
 }
 
-/// Predicted characteristic of a manoeuvre, with that of the true ship.
+/// Characteristic of a manoeuvre: true value, and predicted median with its 90 % interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictedCharacteristic {
     /// Manoeuvre and characteristic, with the unit: `zig-zag 20/20 first_overshoot_deg`.
@@ -96,7 +96,7 @@ pub struct TraceRow {
     pub located: Vec<LocatedMoment>,
     /// Probabilities of effects, of at least 0.005.
     pub probabilities: Vec<(Box<str>, f64)>,
-    /// Gain in BIC of the one missing effect over the best other one.
+    /// Gain in BIC of the missing effect over the best other effect.
     pub margin: Option<f64>,
     /// Expected likelihood ratio of the truth against the nearest first-order response.
     pub expected: Option<f64>,
@@ -117,7 +117,7 @@ pub struct StudyRow {
     pub method: usize,
     /// Reason of a failure; `None` if the method did not fail.
     pub failure: Option<Box<str>>,
-    /// K of the first-order response nearest to the undisturbed trial, 1/s; the ship's own K if it is first order.
+    /// K of the first-order response nearest to the undisturbed trial, 1/s; the K of a first-order ship.
     /// True value for methods that fit such a response.
     pub true_k_per_s: Option<f64>,
     /// T of the nearest first-order response, s.
@@ -160,8 +160,8 @@ pub struct StudyRow {
 }
 
 impl StudyRow {
-    /// True K (1/s) and T (s) for this method: those of the base for a trace, which models the effects, otherwise those
-    /// of the nearest first-order response.
+    /// True K (1/s) and T (s) for this method: of the base for a trace, which models the effects, otherwise of the
+    /// nearest first-order response.
     pub fn truth(&self) -> [Option<f64>; 2] {
         match (&self.traced, self.base_k_per_s, self.base_t_s) {
             (Some(_), k @ Some(_), t @ Some(_)) => [k, t],

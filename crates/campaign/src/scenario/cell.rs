@@ -95,13 +95,15 @@ impl DesignCell {
 
     /// Number of simulated records per trial.
     pub fn record_count(&self) -> usize {
-        self.specification().map_or(0, |spec| 1 + spec.also.len())
+        self.specification().map_or(0, |spec| 1 + spec.further.len())
     }
 
     /// Manoeuvres of a simulated trial: of its record, of further records, and of the validation.
     pub fn manoeuvres(&self) -> Vec<&Manoeuvre> {
-        let Some(Specification { simulation, also, validation, .. }) = self.specification() else { return Vec::new() };
-        std::iter::once(simulation).chain(also).chain(validation).map(|made| &made.manoeuvre).collect()
+        let Some(Specification { simulation, further, validation, .. }) = self.specification() else {
+            return Vec::new();
+        };
+        std::iter::once(simulation).chain(further).chain(validation).map(|run| &run.manoeuvre).collect()
     }
 
     /// Identifiers of the effects missing from a first-order base in its trials.
@@ -121,7 +123,7 @@ impl DesignCell {
         stated.clone().or_else(|| MissingPhysics::from_effects(missing, is_disturbed))
     }
 
-    /// `true` for a first-order base with effects, whose K and T differ from those of the nearest first-order response.
+    /// `true` for a first-order base with effects, not equal to the nearest first-order response in K and T.
     pub fn has_own_indices(&self) -> bool {
         self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
     }
@@ -239,7 +241,7 @@ fn changed(document: &Table, points: &[&sweep::SweepPoint]) -> Result<Table, Key
     Ok(changed)
 }
 
-/// Methods of a cell. Fails unless their labels are those of the design.
+/// Methods of a cell. Fails unless their labels equal the labels of the design.
 fn methods_of_cell(wires: &[IdentifierWire], design: &[Method]) -> Result<Vec<Method>, KeyFault> {
     let methods = methods(wires)?;
     if methods.iter().map(|method| &method.label).eq(design.iter().map(|method| &method.label)) {

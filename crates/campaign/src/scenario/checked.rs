@@ -17,7 +17,7 @@ use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::outside_estimates::OutsideEstimates;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
-use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::prose::{Presentation, Prose, Published};
 use crate::scenario::records::{self, RecordStudyWire};
 use crate::scenario::stop::StopRule;
@@ -82,13 +82,13 @@ impl Scenario {
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::check_file_name(&manifest.name).map_err(|unfit| {
                 let KeyFault { key, mark, problem, expected, advice } =
-                    of_text(KeyPath::from_dotted("name"), &manifest.name, unfit);
+                    text_fault(KeyPath::from_dotted("name"), &manifest.name, unfit);
                 Failure::in_text(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
             let mut document = table_of(path, &text)?;
             let unknown_output = Presentation::remove_unknown(&mut document);
-            let scenario = Self::of_table(path, &manifest.name, text, &document, seed)?;
+            let scenario = Self::from_table(path, &manifest.name, text, &document, seed)?;
             return Ok(Self { unknown_output, ..scenario });
         }
         Self::parse(path, &name::study_name(path)?, text, seed)
@@ -97,27 +97,27 @@ impl Scenario {
     /// Resolves the text of a scenario; messages and relative paths refer to `path`.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
         let document = table_of(path, &text)?;
-        Self::of_table(path, name, text, &document, seed)
+        Self::from_table(path, name, text, &document, seed)
     }
 
     /// Resolves the table of a text.
-    fn of_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
+    fn from_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
-        let scenario = Self::of_document(document, name, folder).map_err(|fault| {
+        let scenario = Self::from_document(document, name, folder).map_err(|fault| {
             let span = locate::span(&text, &fault.key, fault.mark);
             Failure::in_text(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
-        let design = identity::design_of(document);
+        let design = identity::study_design(document);
         let design_sha256 = match document.contains_key(RECORDS) {
             true => records::design_sha256(&design, scenario.cells.iter().filter_map(DesignCell::record_set)),
-            false => identity::sha256_of(&design, folder)?,
+            false => identity::study_sha256(&design, folder)?,
         };
         let seed = seed.unwrap_or(scenario.seed);
         Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
     /// Resolves a document; the caller sets identity and text.
-    fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
+    fn from_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         if document.is_empty() {
             return Err(KeyFault::name(
                 KeyPath::default(),
@@ -127,7 +127,7 @@ impl Scenario {
             ));
         }
         if document.contains_key(RECORDS) {
-            return Self::of_records(document, name, folder);
+            return Self::from_records(document, name, folder);
         }
         let wire: ScenarioWire = reader::read_document(document)?;
         let prose = Prose {
@@ -151,7 +151,7 @@ impl Scenario {
         let cells = combinations.iter().map(|points| cell::simulated_cell(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         wire.published.check()?;
-        let design = Self::of_design(name, prose, axes, cells, &methods)?;
+        let design = Self::from_design(name, prose, axes, cells, &methods)?;
         Ok(Self {
             seed: wire.seed,
             replicates: wire.replicates,
@@ -164,7 +164,7 @@ impl Scenario {
     }
 
     /// Resolves a document of measured records.
-    fn of_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
+    fn from_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         let wire: RecordStudyWire = reader::read_document(document)?;
         let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
         let prose = Prose { question, analysis, finding, output };
@@ -180,14 +180,14 @@ impl Scenario {
         let replicates = counts.max().unwrap_or(0);
         // Without any record there is no trial, which is reported in the run.
         checks::size(replicates.max(1), cells.len(), methods.len())?;
-        let design = Self::of_design(name, prose, axes, cells, &methods)?;
+        let design = Self::from_design(name, prose, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
 
     /// Scenario of cells and methods; the caller sets trials, seed, identity, text and optional parts.
     ///
     /// Fails if the presentation names cells, axes or methods that do not exist.
-    fn of_design(
+    fn from_design(
         name: &str,
         prose: Prose,
         axes: Vec<SweepAxis>,
@@ -216,13 +216,13 @@ impl Scenario {
     }
 
     /// Maximum number of trials of a cell; for measured records the number of splits.
-    pub fn max_trials_of_cell(&self, cell: usize) -> u64 {
+    pub fn max_cell_trials(&self, cell: usize) -> u64 {
         self.cells[cell].record_set().map_or(self.replicates, |set| set.splits.len() as u64)
     }
 
     /// Maximum number of trials of all cells.
     pub fn max_trials(&self) -> u64 {
-        (0..self.cells.len()).map(|cell| self.max_trials_of_cell(cell)).sum()
+        (0..self.cells.len()).map(|cell| self.max_cell_trials(cell)).sum()
     }
 
     /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.
@@ -249,7 +249,7 @@ impl Scenario {
     /// Fails for an invalid label, and for one already in use.
     pub fn with_outside_estimates(self, label: &str, answers: OutsideEstimates) -> Result<Self, Failure> {
         let content = format!("answers {}", answers.sha256());
-        self.with(label, Procedure::Answers(Arc::new(answers)), &content)
+        self.with(label, Procedure::OutsideEstimates(Arc::new(answers)), &content)
     }
 
     /// Scenario with a further method; `identity_text` enters the SHA-256 of the design.

@@ -7,7 +7,7 @@ use crate::scenario::draw::DrawWire;
 use crate::scenario::limits;
 use crate::scenario::method::Method;
 use crate::scenario::name::{self, MAX_NAME_BYTES};
-use crate::scenario::problem::{KeyFault, KeyPath, of_text, place_among};
+use crate::scenario::problem::{KeyFault, KeyPath, choice_index, text_fault};
 use crate::scenario::prose::{Highlight, MarkedValue};
 use crate::scenario::sweep::SweepAxis;
 
@@ -80,7 +80,7 @@ pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     Ok(())
 }
 
-/// Checks that every title of `output.detail` is that of a cell.
+/// Checks that every title of `output.detail` names a cell.
 pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     let cell_titles: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
     let places: HashSet<&str> = cell_titles.iter().map(String::as_str).collect();
@@ -89,7 +89,7 @@ pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     };
     let key = KeyPath::from_dotted("output.detail").child(index);
     let messages = ["no cell is called", "expected labels of points, joined by commas"];
-    let fault = place_among(title, &cell_titles[..cell_titles.len().min(20)], key, messages);
+    let fault = choice_index(title, &cell_titles[..cell_titles.len().min(20)], key, messages);
     fault.map(|_| ()).map_err(|fault| match cell_titles.is_empty() {
         true => KeyFault { advice: "leave the key out: a study without a sweep shows its only cell".into(), ..fault },
         false => fault,
@@ -101,17 +101,18 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
     let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::from_dotted("output.marks").child(index);
-        place_among(&mark.axis, &axis_names, key.child("axis"), ["no axis is called", "expected the name of a sweep"])?;
+        let problem = ["no axis is called", "expected the name of a sweep"];
+        choice_index(&mark.axis, &axis_names, key.child("axis"), problem)?;
         if !mark.value.is_finite() {
             let advice = "give the place of the mark on the axis";
             return Err(KeyFault::value(key.child("at"), format!("found {}", mark.value), "expected a number", advice));
         }
-        name::check_label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
+        name::check_label(&mark.label).map_err(|unfit| text_fault(key.child("label"), &mark.label, unfit))?;
     }
     Ok(())
 }
 
-/// Checks that every highlighted name is that of a method, of a point of a sweep or of a cell.
+/// Checks that every highlighted name belongs to a method, a point of a sweep or a cell.
 pub fn highlight(
     Highlight { series, rows, .. }: &Highlight,
     methods: &[Method],
@@ -125,7 +126,7 @@ pub fn highlight(
     [("series", series), ("rows", rows)].into_iter().try_for_each(|(part, names)| {
         names.iter().enumerate().try_for_each(|(index, name)| {
             let key = KeyPath::from_dotted("output.highlight").child(part).child(index);
-            place_among(name, &names_in_figures, key, messages).map(|_| ())
+            choice_index(name, &names_in_figures, key, messages).map(|_| ())
         })
     })
 }

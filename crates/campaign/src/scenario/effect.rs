@@ -8,8 +8,8 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
 use ship::Regressor;
-use ship::effects::{Effect, FileNumber, FileRole, Formula, meaning};
-use ship::ships::Model;
+use ship::effects::{Effect, Formula, NumberConversion, ScenarioNumber, meaning};
+use ship::ships::ShipModel;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
 
@@ -47,8 +47,8 @@ static IDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     ids
 });
 
-impl From<FileNumber> for NumberKey {
-    fn from(FileNumber { key, meaning, default, .. }: FileNumber) -> Self {
+impl From<ScenarioNumber> for NumberKey {
+    fn from(ScenarioNumber { key, meaning, default, .. }: ScenarioNumber) -> Self {
         Self { key, meaning, is_required: default.is_none(), default }
     }
 }
@@ -82,7 +82,8 @@ fn asked<'a>(
     let keys: Vec<NumberKey> = forms.iter().flat_map(|form| form.keys.iter().copied()).collect();
     number_table::refuse_unknown(numbers, &keys, &key)?;
     if forms.len() > 1 && numbers.len() != 1 {
-        return Err(reader::not_one_name(key, numbers.keys(), &keys.iter().map(|entry| entry.key).collect::<Vec<_>>()));
+        let names: Vec<_> = keys.iter().map(|entry| entry.key).collect();
+        return Err(reader::name_count_fault(key, numbers.keys(), &names));
     }
     let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|number| number.key == name));
     let form = forms.into_iter().find(has_all).expect("every key is known");
@@ -178,7 +179,7 @@ pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -
     let listed = listed.into_iter().map(|(entry, place)| Ok((reader::read_table(entry, &place)?, place)));
     let listed = listed.collect::<Result<Vec<(NamedNumbers, KeyPath)>, KeyFault>>()?;
     let asked = listed.iter().map(|(entry, place)| asked(entry, place)).collect::<Result<Vec<_>, _>>()?;
-    let Model::Response(response) = &ship.model else {
+    let ShipModel::Response(response) = &ship.model else {
         return Err(KeyFault::name(
             list,
             format!("an effect is added to `{}`, a hull with its own equations", ship.id),
@@ -221,7 +222,7 @@ pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -
         effects.push(Arc::new(formula.with_length(ship.particulars.map_or(1.0, |ship| ship.length))));
         parameters.extend(values);
     }
-    let model = Model::Response(ResponseModel::new(effects).with_parameters(parameters));
+    let model = ShipModel::Response(ResponseModel::new(effects).with_parameters(parameters));
     Ok(Ship { model, ..ship })
 }
 
@@ -240,13 +241,15 @@ struct EffectParameter {
 /// Parameters of an effect on a ship with 1/T `inverse_time`, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
     let keys = form.effect.in_file().unwrap_or_default();
-    let setting = |number: &FileNumber| {
+    let setting = |number: &ScenarioNumber| {
         let written = numbers.get(number.key).copied().or(number.default).unwrap_or(f64::NAN);
-        let unit = number.unit * if number.role == FileRole::OverT { inverse_time } else { 1.0 };
+        let unit = number.unit * if number.role == NumberConversion::OverT { inverse_time } else { 1.0 };
         EffectParameter { value: written * unit, key: number.key, written, unit }
     };
     let settings: Vec<EffectParameter> = keys.iter().map(setting).collect();
-    if let ([_, FileNumber { role: FileRole::Direction, .. }], [strength, from]) = (&keys[..], &settings[..]) {
+    if let ([_, ScenarioNumber { role: NumberConversion::Direction, .. }], [strength, from]) =
+        (&keys[..], &settings[..])
+    {
         let twice = 2.0 * from.value;
         let component = |share: f64| match from.written.is_finite() {
             true => EffectParameter { value: strength.value * share, ..*strength },

@@ -8,13 +8,13 @@ use sha2::{Digest, Sha256};
 use toml::{Table, Value};
 use trial::Sidecar;
 use trial::file::{self, FileError};
-use trial::reader::RECORD;
+use trial::reader::RECORD_FILE;
 
 use crate::failure::{Failure, OnPath};
 use crate::scenario::part::ScenarioPart;
 
 /// Design of a document: its keys without prose and presentation.
-pub fn design_of(document: &Table) -> Table {
+pub fn study_design(document: &Table) -> Table {
     document
         .iter()
         .filter(|(key, _)| ScenarioPart::from_key(key) != ScenarioPart::Prose)
@@ -25,7 +25,7 @@ pub fn design_of(document: &Table) -> Table {
 /// SHA-256 of a design and of the records it replays, each with its sidecar, if any.
 ///
 /// Fails if an existing record cannot be read to its end.
-pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
+pub fn study_sha256(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
     while let Some(table) = tables.pop() {
@@ -36,7 +36,7 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
                     let record = folder.join(name);
                     let sidecar = Sidecar::existing_beside(&record);
                     for path in iter::once(record).chain(sidecar) {
-                        match file::open(&path, RECORD) {
+                        match file::open(&path, RECORD_FILE) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
                             // Refused by another check, or overridden in every cell.
                             Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
@@ -131,6 +131,6 @@ mod tests {
         let described = document(
             "# Why?\nquestion = \"?\"\nanalysis = \"!\"\nseed    = 1\n[ship.yukun]\n[output]\nshowcase = true",
         );
-        assert_eq!(design_of(&bare), design_of(&described));
+        assert_eq!(study_design(&bare), study_design(&described));
     }
 }

@@ -25,7 +25,7 @@ const UNITS: [(&str, &str); 20] = [
 ];
 
 /// Unit in the name of a key; "1" without one.
-pub(crate) fn unit_of(key: &str) -> &'static str {
+pub(crate) fn key_unit(key: &str) -> &'static str {
     UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("1", |(_, unit)| unit)
 }
 

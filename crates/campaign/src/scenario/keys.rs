@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use crate::scenario::key_units::unit_of;
-use crate::scenario::schema::of_simulated;
+use crate::scenario::key_units::key_unit;
+use crate::scenario::schema::simulated_schema;
 
 /// Key of a scenario with unit, default and meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,7 +41,7 @@ impl std::fmt::Display for KeyDefault {
 
 /// All keys of a scenario, in the order of its types.
 pub fn keys() -> Vec<ScenarioKey> {
-    let schema = of_simulated().to_value();
+    let schema = simulated_schema().to_value();
     let mut keys = Vec::new();
     SchemaWalk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
     keys
@@ -83,7 +83,7 @@ impl<'a> SchemaWalk<'a> {
             (true, ..) => String::from(if is_list_of_tables { "list of tables" } else { "list" }),
             (_, false, _) => names.join(" or "),
             (.., Some("integer")) => String::from("whole number"),
-            (.., Some("number")) => unit_of(key).to_owned(),
+            (.., Some("number")) => key_unit(key).to_owned(),
             (.., Some("boolean")) => String::from("true or false"),
             (.., Some("string")) => String::from("text"),
             _ => String::from("table"),

@@ -12,7 +12,7 @@ use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
 use crate::scenario::outside_estimates::{self, OutsideEstimates};
-use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::{effect, limits, name};
 
 /// Method as named in a scenario.
@@ -34,10 +34,10 @@ pub enum Procedure {
         /// Method with its settings.
         identifier: Arc<dyn Identifier>,
     },
-    /// Finds what a first-order response lacks.
+    /// Traces the effects missing from a first-order response.
     Trace(::trace::Settings),
-    /// Looks up the estimates of an outside estimator.
-    Answers(Arc<OutsideEstimates>),
+    /// Estimates of an outside estimator, by trial.
+    OutsideEstimates(Arc<OutsideEstimates>),
     /// Null model: the ship keeps her heading, which is fitted.
     StraightOn,
 }
@@ -48,7 +48,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
             Self::Trace(_) => TRACE,
-            Self::Answers(_) => outside_estimates::ID,
+            Self::OutsideEstimates(_) => outside_estimates::METHOD_ID,
             Self::StraightOn => STRAIGHT_ON,
         }
     }
@@ -64,7 +64,7 @@ impl Procedure {
                 "a first-order response with the effects it lacks; it also reads speed, sway and wind, those of a \
                  measured validation record included"
             }
-            Self::Answers(_) => "answers of an outside estimator",
+            Self::OutsideEstimates(_) => "answers of an outside estimator",
             Self::StraightOn => "a ship that keeps her heading: the null model",
         }
     }
@@ -75,7 +75,7 @@ impl Procedure {
         match self {
             Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
             Self::Trace(_) | Self::StraightOn => None,
-            Self::Answers(answers) => Some(answers.estimate_of((key.cell, key.replicate))),
+            Self::OutsideEstimates(answers) => Some(answers.estimate((key.cell, key.replicate))),
         }
     }
 }
@@ -155,7 +155,7 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
         let key = list.child(index);
         let procedure = procedure(entry, &key)?;
         let label = entry.label.clone().unwrap_or_else(|| procedure.id().to_owned());
-        name::check_label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
+        name::check_label(&label).map_err(|unfit| text_fault(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(KeyFault::name(
                 key.child("label"),
@@ -211,7 +211,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFaul
 /// Fault of a refused setting, at its key.
 fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
-    KeyFault::new(key, &error.found, format!("expected {}", error.expected), "change the value, or leave the key out")
+    KeyFault::new(key, &error.value, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
 /// Settings of a trace, without restarted replays and proposals, which a study does not use.

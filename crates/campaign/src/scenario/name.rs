@@ -34,7 +34,7 @@ pub enum InvalidText {
     Unprintable(char),
     /// Character that is reserved in paths or on some file systems.
     #[error("expected the name of a file, which has no `{0}`")]
-    OfPaths(char),
+    PathCharacter(char),
     /// First or last character that would hide the file or name a folder.
     #[error("expected the name of a file, which does not begin with a dot or a blank and does not end with one")]
     Ends,
@@ -63,7 +63,7 @@ pub fn check_file_name(text: &str) -> Result<(), InvalidText> {
     }
     for c in text.chars() {
         match c {
-            '/' | '\\' | '<' | '>' | ':' | '"' | '|' | '?' | '*' => return Err(InvalidText::OfPaths(c)),
+            '/' | '\\' | '<' | '>' | ':' | '"' | '|' | '?' | '*' => return Err(InvalidText::PathCharacter(c)),
             c if !is_printable(c) => return Err(InvalidText::Unprintable(c)),
             _ => {}
         }

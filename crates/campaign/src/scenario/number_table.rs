@@ -1,4 +1,4 @@
-//! Tables of numbers, such as those of an effect or of a user's ship. Their keys are data, with which they are checked,
+//! Tables of numbers, as of an effect or of a user's ship. Their keys are data, with which they are checked,
 //! completed and described in the schema.
 
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ pub fn single_entry<'a>(
     let mut entries = named.iter();
     match (entries.next(), entries.next()) {
         (Some((name, numbers)), None) => Ok((name, place.child(name), numbers)),
-        _ => Err(reader::not_one_name(place.clone(), named.keys(), choices)),
+        _ => Err(reader::name_count_fault(place.clone(), named.keys(), choices)),
     }
 }
 

@@ -8,7 +8,7 @@ use identify::{Estimate, IdentifyError, OutsideFit};
 pub type TrialNumber = (u64, u64);
 
 /// Id of a method whose estimates are read from a table.
-pub const ID: &str = "external";
+pub const METHOD_ID: &str = "external";
 
 /// Outside estimates by trial. A trial without an estimate counts as failed.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct OutsideEstimates {
 }
 
 impl OutsideEstimates {
-    /// Outside estimates, or reasons for missing ones, with the SHA-256 of their source, which identifies them.
+    /// Outside estimates, or reasons for missing estimates, with the SHA-256 of their source, which identifies them.
     pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }
@@ -29,7 +29,7 @@ impl OutsideEstimates {
     }
 
     /// Estimate for a trial. Fails with the reason of a missing estimate.
-    pub fn estimate_of(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
+    pub fn estimate(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
             Some(Err(reason)) => Err(IdentifyError::outside(reason)),

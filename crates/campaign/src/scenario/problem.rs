@@ -129,12 +129,12 @@ impl From<SpecificationError> for KeyFault {
 }
 
 /// Fault of an unusable text.
-pub fn of_text(key: KeyPath, text: &str, unfit: InvalidText) -> KeyFault {
+pub fn text_fault(key: KeyPath, text: &str, unfit: InvalidText) -> KeyFault {
     KeyFault::new(key, quoted_beginning(text), unfit.to_string(), "change the text")
 }
 
 /// Index of a name among `choices`; otherwise a fault with `problem`, `expected` and a suggestion.
-pub fn place_among<S: AsRef<str>>(
+pub fn choice_index<S: AsRef<str>>(
     name: &str,
     choices: &[S],
     key: KeyPath,

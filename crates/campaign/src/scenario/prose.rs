@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::scenario::name;
-use crate::scenario::problem::{KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 
 /// Prose and presentation of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -120,13 +120,13 @@ impl Prose {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
         for (key, text) in prose.chain(output.title.iter().map(|title| ("output.title", title))) {
-            name::check_prose(text).map_err(|unfit| of_text(KeyPath::from_dotted(key), text, unfit))?;
+            name::check_prose(text).map_err(|unfit| text_fault(KeyPath::from_dotted(key), text, unfit))?;
         }
         let figure = output.figure.iter().map(|stem| (KeyPath::from_dotted("output.figure"), stem));
         let figures = output.figures.iter().flatten().enumerate();
         let figures = figures.map(|(index, stem)| (KeyPath::from_dotted("output.figures").child(index), stem));
         for (key, stem) in figure.chain(figures) {
-            name::check_file_name(stem).map_err(|unfit| of_text(key, stem, unfit))?;
+            name::check_file_name(stem).map_err(|unfit| text_fault(key, stem, unfit))?;
         }
         Ok(())
     }
@@ -160,8 +160,8 @@ mod tests {
         let schema = schemars::schema_for!(Presentation);
         let keys = schema.as_value()["properties"].as_object().expect("a table");
         assert!(keys.keys().eq(Presentation::KEYS), "{keys:?}");
-        let words =
+        let prose =
             Prose::from_scenario_text("question = \"Which?\"\n[output]\nfigure = \"errors\"\nmethods = [\"srivc\"]\n");
-        assert_eq!((words.question.as_str(), words.output.figure.as_deref()), ("Which?", Some("errors")));
+        assert_eq!((prose.question.as_str(), prose.output.figure.as_deref()), ("Which?", Some("errors")));
     }
 }

@@ -119,7 +119,7 @@ pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
 }
 
 /// Fault of a table with `names` if exactly one name is expected.
-pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, choices: &[&str]) -> KeyFault {
+pub fn name_count_fault<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, choices: &[&str]) -> KeyFault {
     let names: Vec<&String> = names.collect();
     let (problem, advice) = match names.len() {
         0 => (format!("`{table}` names nothing"), format!("use one of {}", backquoted_list(choices))),
@@ -174,7 +174,7 @@ impl de::Error for ReadFault {
 }
 
 impl ReadFault {
-    /// Fault at a key with its value; without a value, that of the whole document.
+    /// Fault at a key with its value; without a value, fault of the whole document.
     fn at(self, key: KeyPath, value: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.names() {
             [] => "a scenario".to_owned(),
@@ -216,7 +216,7 @@ impl ReadFault {
                 },
             ),
             Self::NotOneName(names) => {
-                not_one_name(key, value.and_then(Value::as_table).into_iter().flat_map(Table::keys), names)
+                name_count_fault(key, value.and_then(Value::as_table).into_iter().flat_map(Table::keys), names)
             }
             Self::Kind(expected) => {
                 let expected = in_toml(&expected);

@@ -12,15 +12,15 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use toml::Table;
 use trial::file;
-use trial::reader::RECORD;
-use trial::sidecar::SIDECAR;
+use trial::reader::RECORD_FILE;
+use trial::sidecar::SIDECAR_FILE;
 use trial::{Origin, Sidecar, Trial};
 
 use crate::disk;
 use crate::scenario::identity;
 use crate::scenario::method::IdentifierWire;
 use crate::scenario::predictions::RecordPredictWire;
-use crate::scenario::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::problem::{KeyFault, KeyPath, choice_index};
 use crate::scenario::prose::Presentation;
 use crate::scenario::sweep::AxisWire;
 
@@ -185,7 +185,7 @@ impl RecordSet {
                 digest.update(sha256);
             }
             if let Some(sidecar) = sidecar {
-                let text = file::read_text(sidecar, SIDECAR).map_err(|error| refuse(&error))?;
+                let text = file::read_text(sidecar, SIDECAR_FILE).map_err(|error| refuse(&error))?;
                 digest.update(Sha256::digest(text));
             }
             warnings.extend(read.warnings.iter().map(|warning| format!("{}: {}", path.display(), warning.text)));
@@ -275,7 +275,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
 /// Path of a file with this SHA-256. Fails with the reason, without the path.
 fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
-    let bytes = disk::read(&path, RECORD.max_bytes).map_err(|error| format!("it cannot be read: {error}"))?;
+    let bytes = disk::read(&path, RECORD_FILE.max_bytes).map_err(|error| format!("it cannot be read: {error}"))?;
     let hash = identity::hex(&Sha256::digest(bytes.unwrap_or_default()));
     if hash == sha256 {
         return Ok(path);
@@ -303,7 +303,7 @@ fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -
                 let place = |name: &String| {
                     let messages = ["no record is called", "expected the name of a file, without its ending"];
                     let key = key.child(part);
-                    place_among(name, names, key, messages)
+                    choice_index(name, names, key, messages)
                 };
                 list.iter().filter(|name| !absent.contains(name)).map(place).collect()
             };

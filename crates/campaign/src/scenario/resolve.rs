@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ::ship::ships::Model;
+use ::ship::ships::ShipModel;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
 use simulate::motion::{Planar, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, SimulatedShip, Simulation};
@@ -19,7 +19,7 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         scenario: name.to_owned(),
-        gear: wire.steering_gear.with_defaults_of(&ship),
+        gear: wire.steering_gear.with_ship_defaults(&ship),
         helmsman: wire.helmsman,
         approach: wire.approach,
         recording: wire.recording,
@@ -29,12 +29,12 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     };
     simulation.check()?;
     // A further record has the same ship, gear, helmsman, weather and instruments.
-    let also = wire.also.iter().enumerate().map(|(index, entry)| {
+    let further_records = wire.also.iter().enumerate().map(|(index, entry)| {
         let context = format!("in the further record {}", index + 1);
         let record = Simulation { recording: entry.recording.unwrap_or(wire.recording), ..simulation.clone() };
         further(entry, record, KeyPath::from_dotted("also").child(index), &context, folder)
     });
-    let also = also.collect::<Result<_, _>>()?;
+    let further_records = further_records.collect::<Result<_, _>>()?;
     // A validation is in a calm and without measurement error, so that the error of a replay is that of the response.
     let validation = wire.validation.as_ref().map(|entry| {
         let record = Simulation {
@@ -47,11 +47,11 @@ pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<S
     });
     let validation = validation.transpose()?;
     let base = match &ship.model {
-        Model::Response(response) => Some(response.first_order()),
-        Model::Hull(_) => None,
+        ShipModel::Response(response) => Some(response.first_order()),
+        ShipModel::Hull(_) => None,
     };
     let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated_physics(&wire.effect)?);
-    Ok(Specification { also, validation, truth, base, missing, stated, simulation })
+    Ok(Specification { further: further_records, validation, truth, base, missing, stated, simulation })
 }
 
 /// Channels absent from the trials of a scenario.
@@ -70,7 +70,7 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
     let simulated = SimulatedShip::from_ship(ship);
     let Some(coefficients) = wire.speed_and_sway else { return Ok(simulated) };
     let key = KeyPath::from_dotted("speed-and-sway");
-    let (Model::Response(response), Some(Particulars { length, speed })) = (&ship.model, ship.particulars) else {
+    let (ShipModel::Response(response), Some(Particulars { length, speed })) = (&ship.model, ship.particulars) else {
         let expected = "expected a response model with length and speed";
         let advice = "leave the table out, or use yukun, or first-order with `length-m` and `speed-kn`";
         return Err(KeyFault::name(key, format!("speed and sway are added to `{}`", ship.id), expected, advice));
@@ -85,12 +85,12 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
     Ok(simulated.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))
 }
 
-/// Identifiers of the effects missing from a first-order base in a trial: those of the ship, and those equal to a
+/// Identifiers of the effects missing from a first-order base in a trial: effects of the ship, and effects equal to a
 /// disturbance.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
-        Model::Response(response) => response.model().effects().iter().map(|effect| effect.id().to_owned()).collect(),
-        Model::Hull(_) => vec![HULL.to_owned()],
+        ShipModel::Response(response) => response.model().effects().iter().map(|effect| effect.id().into()).collect(),
+        ShipModel::Hull(_) => vec![HULL.to_owned()],
     };
     let sea = &wire.disturbance;
     let disturbances = [

@@ -17,7 +17,7 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     effect::fill_defaults(&mut wire.effect);
     ship::fill_defaults(&mut wire.ship);
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &[])?;
-    wire.steering_gear = wire.steering_gear.with_defaults_of(&ship);
+    wire.steering_gear = wire.steering_gear.with_ship_defaults(&ship);
     wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());

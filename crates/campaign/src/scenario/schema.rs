@@ -24,6 +24,6 @@ pub fn schema() -> Schema {
 }
 
 /// JSON schema of a scenario of simulated ships.
-pub(crate) fn of_simulated() -> Schema {
+pub(crate) fn simulated_schema() -> Schema {
     SchemaSettings::draft07().into_generator().into_root_schema_for::<ScenarioWire>()
 }

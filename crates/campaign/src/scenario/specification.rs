@@ -11,7 +11,7 @@ pub struct Specification {
     /// Simulation of the record.
     pub simulation: Simulation,
     /// Further records of the same ship, identified together with the first.
-    pub also: Vec<Simulation>,
+    pub further: Vec<Simulation>,
     /// Validation manoeuvre of the same ship, undisturbed and without measurement noise.
     pub validation: Option<Simulation>,
     /// True response, if the ship is first order.
@@ -33,6 +33,6 @@ impl Specification {
         /// Odd, so that no two of 2⁶⁴ records share a seed.
         const NEXT: u64 = 0x9E37_79B9_7F4A_7C15;
         let key = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
-        std::iter::once(&self.simulation).chain(&self.also).enumerate().map(move |(number, run)| (run, key(number)))
+        std::iter::once(&self.simulation).chain(&self.further).enumerate().map(move |(number, run)| (run, key(number)))
     }
 }

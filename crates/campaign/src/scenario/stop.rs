@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
 
 use crate::scenario::method::Method;
-use crate::scenario::problem::{KeyFault, KeyPath, place_among};
+use crate::scenario::problem::{KeyFault, KeyPath, choice_index};
 
 /// Condition that ends a cell; `replicates` is then the maximum.
 #[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
@@ -77,7 +77,7 @@ impl StopRule {
         }
         let labels: Vec<&str> = methods.iter().map(|method| method.label.as_str()).collect();
         let messages = ["`stop.method` is", "no such method in this scenario"];
-        let place = self.method.as_ref().map(|label| place_among(label, &labels, key.child("method"), messages));
+        let place = self.method.as_ref().map(|label| choice_index(label, &labels, key.child("method"), messages));
         place.transpose().map(|_| ())
     }
 }

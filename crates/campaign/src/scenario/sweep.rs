@@ -13,7 +13,7 @@ use crate::scenario::key_units::axis_title;
 use crate::scenario::limits;
 use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
-use crate::scenario::problem::{FaultMark, KeyFault, KeyPath, of_text};
+use crate::scenario::problem::{FaultMark, KeyFault, KeyPath, text_fault};
 
 /// Maximum number of cells; a larger one is an error in a range.
 const MAX_CELLS: usize = 100_000;
@@ -176,8 +176,9 @@ impl AxisWire {
 
     /// Points as listed, or spread over a range.
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
-        let single =
-            |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
+        let single = |key: &str, value: Value, value_place: KeyPath| {
+            SweepPoint::from_value(key, value, place.child("key"), value_place)
+        };
         let spread = |key: &str, values: Vec<f64>, how: &str| -> Vec<SweepPoint> {
             values.into_iter().map(|value| single(key, Value::Float(value), place.child(how))).collect()
         };
@@ -211,12 +212,12 @@ impl AxisWire {
                     Some(_) => (place.child("points").child(i).child("label"), "change the label"),
                     None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
                 };
-                KeyFault { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
+                KeyFault { advice: advice.to_owned(), ..text_fault(key, &point.label, unfit) }
             })?;
         }
         name::check_label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
-            KeyFault { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), name, unfit) }
+            KeyFault { advice: "give the sweep a short `name`".to_owned(), ..text_fault(place.child(key), name, unfit) }
         })?;
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
@@ -285,7 +286,7 @@ impl RangeWire {
 }
 
 impl SweepPoint {
-    fn of(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
+    fn from_value(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
         let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
         let label = match (&value, number) {
             (_, Some(number)) => trim(number),

@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-use super::bootstrap::{RESAMPLES, SEED};
+use super::bootstrap::{BOOTSTRAP_SEED, RESAMPLE_COUNT};
 use super::statistic::MIN_INTERVAL_VALUES;
 
 /// Values of `compute` on the cases of each resample of clusters.
@@ -31,14 +31,14 @@ fn draw_clusters(clusters: &[Vec<usize>], rng: &mut ChaCha8Rng, cases: &mut Vec<
 }
 
 fn draws<T>(draw: impl Fn(&mut ChaCha8Rng, &mut Vec<usize>), compute: impl Fn(&[usize]) -> T) -> Vec<T> {
-    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut rng = ChaCha8Rng::seed_from_u64(BOOTSTRAP_SEED);
     let mut cases = Vec::new();
     let value = |_| {
         cases.clear();
         draw(&mut rng, &mut cases);
         compute(&cases)
     };
-    (0..RESAMPLES).map(value).collect()
+    (0..RESAMPLE_COUNT).map(value).collect()
 }
 
 #[cfg(test)]

@@ -17,5 +17,5 @@ pub use groups::{distinct, grouped};
 pub use logistic::{DetectionCount, detection_size};
 pub use moments::Moments;
 pub use sample::{ErrorSample, OrderedSample};
-pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED, Statistic, Z95, wilson_share};
-pub use sums::{BATCHES, BatchSums, ErrorSums, PairSums};
+pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED_VALUES, NORMAL_QUANTILE_95, Statistic, wilson_share};
+pub use sums::{BATCH_COUNT, BatchSums, ErrorSums, PairSums};

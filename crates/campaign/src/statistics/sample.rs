@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::statistic::{MIN_INTERVAL_VALUES, Statistic, Z95};
+use super::statistic::{MIN_INTERVAL_VALUES, NORMAL_QUANTILE_95, Statistic};
 
 /// Maximum number of exact values.
 const MAX_EXACT_VALUES: usize = 8192;
@@ -43,9 +43,9 @@ impl ErrorSample {
     /// Values in order.
     pub fn ordered(&self) -> OrderedSample {
         if self.bins.is_empty() {
-            return OrderedSample::of(self.exact.iter().map(|&value| (value, 1)).collect());
+            return OrderedSample::from_counts(self.exact.iter().map(|&value| (value, 1)).collect());
         }
-        OrderedSample::of(self.bins.iter().map(|(&bin, &count)| (value_of(bin), count)).collect())
+        OrderedSample::from_counts(self.bins.iter().map(|(&bin, &count)| (value_of(bin), count)).collect())
     }
 }
 
@@ -82,7 +82,7 @@ pub struct OrderedSample {
 }
 
 impl OrderedSample {
-    fn of(mut counted: Vec<(f64, u64)>) -> Self {
+    fn from_counts(mut counted: Vec<(f64, u64)>) -> Self {
         counted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut total = 0;
         let up_to = counted.iter().map(|&(_, count)| {
@@ -127,7 +127,7 @@ impl OrderedSample {
     pub fn quantile_statistic(&self, p: f64) -> Option<Statistic> {
         let value = self.quantile(p)?;
         let n = self.len() as f64;
-        let reach = Z95 * (n * p * (1.0 - p)).sqrt();
+        let reach = NORMAL_QUANTILE_95 * (n * p * (1.0 - p)).sqrt();
         let (low, high) = ((n * p - reach).floor(), (n * p + reach).ceil() - 1.0);
         let ci95 = (self.len() >= MIN_INTERVAL_VALUES && low >= 0.0 && high < n)
             .then(|| [self.at(low as u64), self.at(high as u64)]);
@@ -136,7 +136,7 @@ impl OrderedSample {
 
     /// Absolute deviations from a centre.
     pub fn absolute_deviations(&self, centre: f64) -> Self {
-        Self::of(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
+        Self::from_counts(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
     }
 
     /// Median absolute deviation from the median, not scaled to a standard deviation.

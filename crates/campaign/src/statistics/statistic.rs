@@ -25,14 +25,14 @@ impl Statistic {
     }
 }
 
-/// Two-sided 95 % quantile of the standard normal distribution.
-pub const Z95: f64 = 1.959_963_984_540_054;
+/// Two-sided 95 % quantile of the standard normal distribution, 1.96.
+pub const NORMAL_QUANTILE_95: f64 = 1.959_963_984_540_054;
 
 /// Minimum number of values for an interval: below it no pair of order statistics covers the median with 95 %.
 pub const MIN_INTERVAL_VALUES: u64 = 6;
 
 /// Minimum number of values that are summarised by a median and a range; fewer are shown individually.
-pub const MIN_SUMMARISED: usize = 5;
+pub const MIN_SUMMARISED_VALUES: usize = 5;
 
 /// Share of `count` in `cases` with its interval (Wilson 1927); `None` without cases.
 pub fn wilson_share(count: u64, cases: u64) -> Option<Statistic> {
@@ -40,7 +40,7 @@ pub fn wilson_share(count: u64, cases: u64) -> Option<Statistic> {
         return None;
     }
     let value = count as f64 / cases as f64;
-    Some(Statistic { value, ci95: Some(wilson_interval(value, cases as f64, Z95)) })
+    Some(Statistic { value, ci95: Some(wilson_interval(value, cases as f64, NORMAL_QUANTILE_95)) })
 }
 
 #[cfg(test)]

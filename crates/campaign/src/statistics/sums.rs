@@ -3,8 +3,8 @@
 
 use std::iter::Sum;
 
-/// Number of batches.
-pub const BATCHES: usize = 256;
+/// Number of batches of the bootstrap.
+pub const BATCH_COUNT: usize = 256;
 
 /// Sums over the values of one batch.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -29,7 +29,7 @@ impl Sum for BatchSums {
 
 /// Batch of a replicate.
 fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
-    let place = (replicate % BATCHES as u64) as usize;
+    let place = (replicate % BATCH_COUNT as u64) as usize;
     if batches.len() <= place {
         batches.resize(place + 1, BatchSums::default());
     }
@@ -39,8 +39,7 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
 /// Batch sums of one quantity, in its unit, from which mean, standard deviation and root mean square follow.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorSums {
-    /// First value, which is subtracted from every value so that a large bias does not cancel the digits of a small
-    /// scatter.
+    /// First value, subtracted from every value so that a large bias does not cancel the digits of a small scatter.
     shift: f64,
     batches: Vec<BatchSums>,
 }
@@ -64,18 +63,18 @@ impl ErrorSums {
     }
 
     /// Mean of the values in a total of batches; `None` without values.
-    pub fn mean_of(&self, total: &BatchSums) -> Option<f64> {
+    pub fn mean(&self, total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| self.shift + total.first / total.count)
     }
 
     /// Standard deviation of the values in a total of batches; `None` below two values.
-    pub fn sd_of(&self, total: &BatchSums) -> Option<f64> {
+    pub fn sd(&self, total: &BatchSums) -> Option<f64> {
         let n = total.count;
         (n > 1.0).then(|| ((total.second - total.first * total.first / n).max(0.0) / (n - 1.0)).sqrt())
     }
 
     /// Root mean square of the values in a total of batches; `None` without values.
-    pub fn rms_of(&self, total: &BatchSums) -> Option<f64> {
+    pub fn rms(&self, total: &BatchSums) -> Option<f64> {
         let (n, c) = (total.count, self.shift);
         (n > 0.0).then(|| ((total.second + 2.0 * c * total.first) / n + c * c).max(0.0).sqrt())
     }
@@ -114,14 +113,13 @@ impl PairSums {
         self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
     }
 
-    /// Root mean square error of the method minus that of the reference in a total of batches; `None` without trials.
-    pub fn difference_of(total: &BatchSums) -> Option<f64> {
+    /// Difference of the root mean square errors, method minus reference, in a total of batches; `None` without trials.
+    pub fn rms_difference(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
     }
 
-    /// Root mean square error of the method over that of the reference in a total of batches; `None` if the latter is
-    /// zero.
-    pub fn ratio_of(total: &BatchSums) -> Option<f64> {
+    /// Ratio of root mean square errors, method over reference, in a total of batches; `None` for a reference of zero.
+    pub fn rms_ratio(total: &BatchSums) -> Option<f64> {
         (total.second > 0.0).then(|| (total.first / total.second).sqrt())
     }
 }
@@ -139,11 +137,11 @@ mod tests {
         let mut sums = ErrorSums::default();
         (0..1000).for_each(|replicate| sums.add(replicate, -6.53 + 1e-9 * f64::from(u8::from(replicate % 2 == 0))));
         let total = total(sums.batches());
-        assert_eq!(sums.batches().len(), BATCHES);
-        let sd = sums.sd_of(&total).expect("enough");
+        assert_eq!(sums.batches().len(), BATCH_COUNT);
+        let sd = sums.sd(&total).expect("enough");
         assert!((sd / 0.5e-9 - 1.0).abs() < 1e-3, "{sd}");
-        assert!((sums.rms_of(&total).expect("some") - 6.53).abs() < 1e-8);
-        assert!((sums.mean_of(&total).expect("some") + 6.53).abs() < 1e-8);
+        assert!((sums.rms(&total).expect("some") - 6.53).abs() < 1e-8);
+        assert!((sums.mean(&total).expect("some") + 6.53).abs() < 1e-8);
     }
 
     #[test]
@@ -152,8 +150,8 @@ mod tests {
         [(3.0, 1.0), (-3.0, 1.0), (3.0, -3.0)].iter().zip(0..).for_each(|(&(a, b), r)| pairs.add(r, a, b));
         let total = total(pairs.batches());
         let rms = (11.0_f64 / 3.0).sqrt();
-        assert!((PairSums::difference_of(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
-        assert!((PairSums::ratio_of(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
+        assert!((PairSums::rms_difference(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
+        assert!((PairSums::rms_ratio(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
         assert_eq!(pairs.smaller, 0.5);
     }
 }

@@ -31,7 +31,7 @@ pub struct ErrorDensity {
 
 impl ErrorDensity {
     /// Distribution of errors, %; `None` without values.
-    pub(super) fn of(errors: &OrderedSample) -> Option<Self> {
+    pub(super) fn from_errors(errors: &OrderedSample) -> Option<Self> {
         errors.quantile(0.5)?;
         let quantiles = [0.025, 0.25, 0.5, 0.75, 0.975].map(|p| errors.quantile(p).unwrap_or_default());
         Some(Self { density: errors.density(PLACES), quantiles })
@@ -51,7 +51,7 @@ pub struct Cloud {
 
 impl Cloud {
     /// Joint distribution of errors of K and T; `None` below ten pairs.
-    pub(super) fn of(pairs: &[(f64, f64)]) -> Option<Self> {
+    pub(super) fn from_pairs(pairs: &[(f64, f64)]) -> Option<Self> {
         if pairs.len() < 10 {
             return None;
         }

@@ -88,7 +88,7 @@ pub struct MethodSummary {
 pub struct Comparison {
     /// Difference of the rms errors, %; negative if the method is better.
     pub rms_difference: Option<Statistic>,
-    /// Ratio of the rms error of the method to that of the reference.
+    /// Ratio of the rms errors, method over reference.
     pub rms_ratio: Option<Statistic>,
     /// Share of trials in which the error of the method is smaller.
     pub closer: Option<Statistic>,

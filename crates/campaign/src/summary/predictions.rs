@@ -4,7 +4,7 @@ use std::array;
 use std::sync::LazyLock;
 
 use estimation::statistics::median;
-use predict::imo::limit_of;
+use predict::imo::imo_limit;
 use serde::{Deserialize, Serialize};
 
 use crate::rows::{PredictedCharacteristic, StudyRow};
@@ -33,7 +33,7 @@ pub struct PredictionSummary {
 /// Nominal coverage of the intervals.
 const NOMINAL: f64 = 0.9;
 
-/// Factors by which intervals are scaled about the median to find the one that they lack: 1/8 to 32 in steps of 9 %.
+/// Factors of intervals about the median, among which the factor of nominal coverage is sought: 1/8 to 32, 9 % apart.
 static INTERVAL_SCALES: LazyLock<[f64; 65]> =
     LazyLock::new(|| array::from_fn(|place| ((place as f64 - UNSCALED as f64) / 8.0).exp2()));
 
@@ -59,20 +59,20 @@ pub struct ConformalScaling {
 }
 
 impl ConformalScaling {
-    /// Scaling of the `judged` predictions by the factor of the `others`, every figure with the same weight.
+    /// Scaling of `predictions` by the factor of the `calibration` predictions, every figure with the same weight.
     ///
     /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
     /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
-    pub fn from_others(judged: &[&PredictionSummary], others: &[&PredictionSummary]) -> Option<Self> {
+    pub fn from_calibration(predictions: &[&PredictionSummary], calibration: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
             lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
         };
-        let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(others, *place) >= NOMINAL)?;
+        let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(calibration, *place) >= NOMINAL)?;
         let relative = |line: &&PredictionSummary, place: usize| line.relative(line.mean_score(place));
-        let score = |place| median(&mut judged.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
+        let score = |place| median(&mut predictions.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
         Some(Self {
             factor: INTERVAL_SCALES[place],
-            coverage: [UNSCALED, place].map(|place| coverage(judged, place)),
+            coverage: [UNSCALED, place].map(|place| coverage(predictions, place)),
             score: [score(UNSCALED)?, score(place)?],
         })
     }
@@ -163,7 +163,7 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
     for figure in row.predicted.iter().flatten() {
         let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
             let (cell, method, name) = (row.cell as usize, row.method, figure.name.clone());
-            let limited = length_over_speed.and_then(|scale| limit_of(&name, scale));
+            let limited = length_over_speed.and_then(|scale| imo_limit(&name, scale));
             let criterion = limited.map(|(name, limit)| ImoDecisionTally {
                 name: name.into(),
                 limit,
@@ -233,15 +233,15 @@ mod tests {
             lines.remove(0)
         };
         let (near, far) = (ship(1.0), ship(2.0));
-        let scaling = ConformalScaling::from_others(&[&near], &[&far]).expect("both are there");
+        let scaling = ConformalScaling::from_calibration(&[&near], &[&far]).expect("both are there");
         assert_eq!((scaling.factor, scaling.coverage), (2.0, [1.0, 1.0]));
         assert!((scaling.score[0] - 0.02).abs() < 1e-12 && (scaling.score[1] - 0.04).abs() < 1e-12);
-        let scaling = ConformalScaling::from_others(&[&far], &[&near]).expect("both are there");
+        let scaling = ConformalScaling::from_calibration(&[&far], &[&near]).expect("both are there");
         assert_eq!((scaling.factor, scaling.coverage), (1.0, [0.0, 0.0]));
         // Width 2 and 20 times 1, of 100.
         assert!((scaling.score[1] - 0.22).abs() < 1e-9);
-        assert_eq!(ConformalScaling::from_others(&[&near], &[]), None);
-        assert_eq!(ConformalScaling::from_others(&[&near], &[&ship(50.0)]), None);
+        assert_eq!(ConformalScaling::from_calibration(&[&near], &[]), None);
+        assert_eq!(ConformalScaling::from_calibration(&[&near], &[&ship(50.0)]), None);
     }
 
     /// The limit is 5 + L/(2V) = 15°.

@@ -28,7 +28,7 @@ pub struct RecordSummary {
     /// Median over trials of the heading error on the validation record, deg.
     #[serde(rename = "judged_deg")]
     pub validation_deg: Option<Statistic>,
-    /// Median over trials of the ratio of the validation error to that of the first method; `None` for the first
+    /// Median over trials of the ratio of validation errors, this method over the first; `None` for the first
     /// method.
     pub ratio: Option<Statistic>,
     /// Median over trials of the ratio of the validation errors of replays restarted every 60 s.

@@ -11,7 +11,9 @@ use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::scenario::MethodName;
-use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, wilson_share};
+use crate::statistics::{
+    BATCH_COUNT, ErrorSample, ErrorSums, NORMAL_QUANTILE_95, PairSums, Resamples, Statistic, wilson_share,
+};
 
 /// Reference method, if a study has it; otherwise the first.
 const REFERENCE: &str = "output-error";
@@ -173,7 +175,7 @@ fn most_batches(methods: &[MethodTally]) -> usize {
 
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
-        resamples.bootstrap(pair.batches(), |total| [PairSums::difference_of(total), PairSums::ratio_of(total)]);
+        resamples.bootstrap(pair.batches(), |total| [PairSums::rms_difference(total), PairSums::rms_ratio(total)]);
     Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trials()) }
 }
 
@@ -181,14 +183,14 @@ fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
 #[derive(Debug, Clone, Default)]
 struct MethodTally {
     trials: u64,
-    /// Number of batches with a trial, failed ones included.
+    /// Number of batches with a trial, failed trials included.
     batches: usize,
     failures: Vec<(String, u64)>,
     /// Error sums of K, T and K/T.
     indices: [IndexSums; 3],
     /// Errors of K and T on the current trial, %.
     latest: [Option<f64>; 2],
-    /// Sums of the errors of K and T with those of the reference.
+    /// Paired sums of the errors of K and T, method and reference.
     pairs: [PairSums; 2],
     heading: ErrorSample,
     validation: ErrorSample,
@@ -204,7 +206,7 @@ const MAX_REASONS: usize = 50;
 impl MethodTally {
     fn add(&mut self, row: &StudyRow, errors: &[Option<f64>; 3]) {
         self.trials += 1;
-        self.batches = self.batches.max((row.replicate as usize % BATCHES) + 1);
+        self.batches = self.batches.max((row.replicate as usize % BATCH_COUNT) + 1);
         if let Some(reason) = row.failure.as_deref() {
             self.failed(reason);
         }
@@ -271,8 +273,8 @@ impl MethodTally {
     }
 
     fn detail(&self) -> MethodDetail {
-        let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::of(&index.sample.ordered()));
-        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::of(&self.cloud) }
+        let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::from_errors(&index.sample.ordered()));
+        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::from_pairs(&self.cloud) }
     }
 }
 
@@ -328,7 +330,7 @@ impl IndexSums {
         let (first, [sum, square]) = self.answers?;
         let count = self.answered as f64;
         let value = first + sum / count;
-        let half = Z95 * ((square - sum * sum / count).max(0.0) / (count - 1.0) / count).sqrt();
+        let half = NORMAL_QUANTILE_95 * ((square - sum * sum / count).max(0.0) / (count - 1.0) / count).sqrt();
         Some(Statistic { value, ci95: half.is_finite().then_some([value - half, value + half]) })
     }
 
@@ -337,7 +339,7 @@ impl IndexSums {
         let sizes = ordered.absolute_deviations(0.0);
         let sums = &self.sums;
         let [mean, sd, rms] =
-            resamples.bootstrap(sums.batches(), |total| [sums.mean_of(total), sums.sd_of(total), sums.rms_of(total)]);
+            resamples.bootstrap(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
         let (squares, count) = self.bounds;
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
         IndexErrors {

@@ -43,7 +43,7 @@ impl<const N: usize> Smoother<N> {
         self.filter.system.readings.iter().enumerate().map(step).collect()
     }
 
-    /// Innovations in units of their standard deviation.
+    /// Innovations in units of their standard deviation; `forced(row)` is the state change by a known input before it.
     pub fn whitened(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<f64> {
         let weight = |row: usize| self.filter.weights[self.filter.gain_of[row] as usize];
         self.run(column, forced).iter().enumerate().map(|(row, (_, innovation))| innovation * weight(row)).collect()

@@ -133,8 +133,7 @@ impl Whitener {
         column.iter().zip(&self.readings).zip(&self.gain_of).map(predict).collect()
     }
 
-    /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse covariance of the
-    /// noise.
+    /// Applies the transpose Wᵀ of the whitening W to a column in place; WᵀW = Σ⁻¹, the inverse noise covariance.
     pub fn apply_transposed(&self, column: &mut [f64]) {
         let mut later = [0.0; MAX_STATES];
         for ((value, &reading), &gain) in column.iter_mut().zip(&self.readings).zip(&self.gain_of).rev() {

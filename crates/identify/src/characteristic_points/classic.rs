@@ -3,16 +3,16 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
-use super::points::{Point, Points};
+use super::points::{CharacteristicPoint, TrialPoints};
 use super::points_fit::{AnalysedTrial, PointsFit};
 use crate::error::IdentifyError;
 use estimation::column::extremes;
 use estimation::least_squares::LeastSquares;
 
-/// Points of one trial that enter the solution.
+/// Characteristic points of one trial that enter the solution.
 struct SelectedPoints<'a> {
-    still: &'a [Point],
-    crossings: Vec<Point>,
+    still: &'a [CharacteristicPoint],
+    crossings: Vec<CharacteristicPoint>,
 }
 
 /// Differences between two points: ψ(t) − ψ(s) + T [r(t) − r(s)] = K (rudder + δ_r duration).
@@ -26,7 +26,7 @@ struct Interval {
 }
 
 impl Interval {
-    fn between(from: &Point, to: &Point) -> Self {
+    fn between(from: &CharacteristicPoint, to: &CharacteristicPoint) -> Self {
         Self {
             duration: to.time - from.time,
             rudder: to.rudder_integral - from.rudder_integral,
@@ -74,7 +74,7 @@ pub(super) fn identify(
     let flat: Vec<Interval> = swings.into_iter().flatten().collect();
     let squares: f64 = rises.iter().map(|rise| rise.rate * rise.rate).sum();
     if rises.is_empty() {
-        return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, count: 0 });
+        return Err(IdentifyError::TooFewPoints { kind: "passages of the base course", needed: 1, count: 0 });
     }
     // The ratio of sums has less variance than the mean of ratios, because it weighs by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
@@ -85,24 +85,23 @@ pub(super) fn identify(
     })
 }
 
-fn all(points: &Points) -> SelectedPoints<'_> {
+fn all(points: &TrialPoints) -> SelectedPoints<'_> {
     SelectedPoints { still: &points.zero_rate_points, crossings: points.crossings.clone() }
 }
 
-fn first_three_peaks(points: &Points) -> Result<SelectedPoints<'_>, IdentifyError> {
+fn first_three_peaks(points: &TrialPoints) -> Result<SelectedPoints<'_>, IdentifyError> {
     let extrema = points.extrema();
     let still = extrema.get(..3).ok_or(IdentifyError::TooFewPoints {
-        what: "heading extrema",
+        kind: "heading extrema",
         needed: 3,
         count: extrema.len(),
     })?;
-    let inside = |crossing: &&Point| crossing.time > still[0].time && crossing.time < still[2].time;
+    let inside = |crossing: &&CharacteristicPoint| crossing.time > still[0].time && crossing.time < still[2].time;
     Ok(SelectedPoints { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
 }
 
-/// Interval from the last instant with r = 0 before a passage, or from the first instant after it if there is none
-/// before.
-fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
+/// Interval from the last instant with r = 0 before a passage, or from the first instant after it if none is before.
+fn to_crossing(still: &[CharacteristicPoint], crossing: &CharacteristicPoint) -> Option<Interval> {
     let after = still.partition_point(|point| point.time < crossing.time);
     let from = still.get(after.saturating_sub(1))?;
     Some(Interval::between(from, crossing))
@@ -115,7 +114,7 @@ impl GainFit {
         let needed = if bias.is_some() { 1 } else { 2 };
         if count < needed {
             return Err(IdentifyError::TooFewPoints {
-                what: "swings between instants without yaw rate",
+                kind: "swings between instants without yaw rate",
                 needed,
                 count,
             });

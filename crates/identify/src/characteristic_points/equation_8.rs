@@ -73,7 +73,7 @@ pub(super) fn identify_at_extrema(
             [origin.heading + trial.points.base, 0.0]
         } else {
             local_fit(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
-                what: "headings in the first window",
+                kind: "headings in the first window",
                 needed: 5,
                 count: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.half_width),
             })?

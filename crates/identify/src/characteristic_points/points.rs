@@ -36,7 +36,7 @@ pub enum BaseCourseOrigin {
 
 /// Characteristic point of a record; the heading is relative to the base course.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct CharacteristicPoint {
     /// Time, s.
     pub time: f64,
     /// Heading, rad.
@@ -49,29 +49,29 @@ pub struct Point {
 
 /// Characteristic points of one trial.
 #[derive(Debug, Clone)]
-pub struct Points {
+pub struct TrialPoints {
     /// Points with r = 0 in order of time; a start at rest is the first point.
-    pub zero_rate_points: Vec<Point>,
+    pub zero_rate_points: Vec<CharacteristicPoint>,
     /// Passages of the base course in order of time.
-    pub crossings: Vec<Point>,
+    pub crossings: Vec<CharacteristicPoint>,
     /// `true` if the record starts at rest, so that the first of `zero_rate_points` is the execute and no extremum.
     pub from_rest: bool,
     /// Base course, rad.
     pub base: f64,
     /// Origin of the base course.
-    pub base_from: BaseCourseOrigin,
+    pub base_origin: BaseCourseOrigin,
     /// Half width of the fits, s.
     pub half_width: f64,
 }
 
-impl Points {
+impl TrialPoints {
     /// Heading extrema, without a start at rest.
-    pub fn extrema(&self) -> &[Point] {
+    pub fn extrema(&self) -> &[CharacteristicPoint] {
         &self.zero_rate_points[usize::from(self.from_rest)..]
     }
 
     /// Leaves a start at rest out of the instants with r = 0.
-    pub fn drop_rest(&mut self) {
+    pub fn remove_start_at_rest(&mut self) {
         if std::mem::take(&mut self.from_rest) {
             self.zero_rate_points.remove(0);
         }
@@ -84,7 +84,7 @@ impl Points {
         let (lo, hi) = extremes(&samples.heading);
         let approach = approach(samples, base, [lo, hi]);
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        let (base, base_from) = match (base, &approach) {
+        let (base, base_origin) = match (base, &approach) {
             (Some(base), _) => (base, BaseCourseOrigin::Given),
             (None, Some(rows)) => (mean(rows.clone()), BaseCourseOrigin::Approach),
             // A zero between the quarter points of the headings may be the base course.
@@ -95,9 +95,11 @@ impl Points {
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
         let half_width =
             half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
-        let point =
-            |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
-        let mut zero_rate_points: Vec<Point> = points::extrema(time, &off_course, half_width)
+        let point = |time, heading, rate| {
+            let rudder_integral = rudder_integral(samples, time);
+            CharacteristicPoint { time, heading, rate, rudder_integral }
+        };
+        let mut zero_rate_points: Vec<CharacteristicPoint> = points::extrema(time, &off_course, half_width)
             .into_iter()
             .map(|[at, heading]| {
                 let (at, heading) = centred(time, &off_course, half_width, at).unwrap_or((at, heading));
@@ -119,7 +121,7 @@ impl Points {
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
-        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_from, half_width }
+        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_origin, half_width }
     }
 }
 

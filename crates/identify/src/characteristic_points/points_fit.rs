@@ -2,14 +2,14 @@
 
 use nalgebra::Matrix3;
 
-use super::points::Points;
+use super::points::TrialPoints;
 use crate::samples::Samples;
 
 /// Trial with its characteristic points.
 #[derive(Debug)]
 pub(super) struct AnalysedTrial {
     pub(super) samples: Samples,
-    pub(super) points: Points,
+    pub(super) points: TrialPoints,
 }
 
 /// Result of a variant, in the parameters of the integrated equation.

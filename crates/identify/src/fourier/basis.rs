@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::curve::FourierSeries;
-use super::nodes::{dot, has_even_steps};
+use super::folded_rows::{dot, has_even_steps};
 use crate::error::IdentifyError;
 
 /// Nested bases with 0, 1, .. N harmonics of one fundamental on given instants: leading columns of one design matrix X
@@ -81,7 +81,7 @@ impl NestedBases {
         let (rows, width) = (time.len(), 2 * harmonics + 1);
         if rows <= width {
             let (needed, count) = (width + 1, rows);
-            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
+            return Err(IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed, count });
         }
         let centre = 0.5 * (time[0] + time[rows - 1]);
         // Without harmonics there are no sine columns.
@@ -275,7 +275,7 @@ impl Basis {
 
     /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the second function of its
     /// pair.
-    pub fn moments_of_derivative(&self, moments: &DVector<f64>) -> DVector<f64> {
+    pub fn derivative_moments(&self, moments: &DVector<f64>) -> DVector<f64> {
         -self.derivative(moments)
     }
 
@@ -367,7 +367,7 @@ mod tests {
                 assert_abs_diff_eq!(rates[i], curve.yaw_rate(*t), epsilon = 1e-12);
                 assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration(*t), epsilon = 1e-13);
             }
-            let by_coefficients = basis.moments_of_derivative(&basis.moments(&values));
+            let by_coefficients = basis.derivative_moments(&basis.moments(&values));
             let sum: f64 = rates.iter().zip(&values).map(|(r, y)| r * y).sum();
             assert_relative_eq!(by_coefficients.dot(&projection.coefficients), sum, max_relative = 1e-11);
             let covariance = basis.unscaled_covariance();
@@ -389,7 +389,7 @@ mod tests {
         let error = Basis::new(&time, 0.1, 8).expect_err("17 columns on 17 rows");
         assert_eq!(
             error,
-            IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed: 18, count: 17 }
+            IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed: 18, count: 17 }
         );
     }
 }

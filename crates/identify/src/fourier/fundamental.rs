@@ -95,7 +95,7 @@ fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) 
     ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
-/// Minimum found downhill from `from` in steps too small to leave a basin, then refined.
+/// Local minimum downhill from `from`, in steps too small to leave a basin, then refined.
 fn descend(profile: &mut Profile, from: f64, duration: f64, harmonics: usize) -> (f64, ChosenFundamental) {
     let step = DESCENT_STEP * PI / (harmonics as f64 * duration);
     let (floor, ceiling) = (MIN_PERIODS * TAU / duration, from.max(TAU / duration) * 2.0);
@@ -246,8 +246,8 @@ pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, Identi
         }
     }
     if crossings.len() < 2 {
-        let what = "zero crossings of the heading";
-        return Err(IdentifyError::TooFewPoints { what, needed: 2, count: crossings.len() });
+        let kind = "zero crossings of the heading";
+        return Err(IdentifyError::TooFewPoints { kind, needed: 2, count: crossings.len() });
     }
     let mut periods: Vec<f64> = if crossings.len() == 2 {
         vec![2.0 * (crossings[1] - crossings[0])]

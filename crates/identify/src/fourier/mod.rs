@@ -11,14 +11,14 @@
 //! | choosing w | `fundamental` |
 //! | the series on the instants of a record | `basis` |
 //! | RSS as a function of w | `profile` |
-//! | a record folded about its middle | `nodes` |
+//! | a record folded about its middle | `folded_rows` |
 //! | triples of instants, eq. (10) of the paper | `triples` |
 //! | regression on a pair of projected signals | [`regression`] |
 
 pub(crate) mod basis;
 mod curve;
+mod folded_rows;
 pub(crate) mod fundamental;
-mod nodes;
 mod profile;
 pub mod regression;
 pub(crate) mod triples;
@@ -63,7 +63,7 @@ pub fn fit(
 ) -> Result<FittedSeries, IdentifyError> {
     let (needed, count) = (2 * harmonics + 2, time.len());
     if count < needed {
-        return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, count });
+        return Err(IdentifyError::TooFewPoints { kind: "headings for the Fourier series", needed, count });
     }
     let choice = fundamental.choose(time, heading, harmonics)?;
     let basis = Basis::new(time, choice.fundamental, harmonics)?;

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use std::array::from_fn;
 use std::f64::consts::FRAC_PI_2;
 
-use super::nodes::{LANES, Nodes, lanes};
+use super::folded_rows::{FoldedRows, LANES, lanes};
 
 /// Minimum pivot, relative to its column, of the normal equations; below it QR is used. A pivot of size p leaves an
 /// error of about ε/p in the pivots after it: at 1e-6 that is harmless, from 1e-8 on pivots consist of error and false
@@ -32,7 +32,7 @@ pub struct Profile {
     duration: f64,
     total: f64,
     /// Rows of the record.
-    rows: Nodes,
+    rows: FoldedRows,
     /// cos ½wu and sin ½wu of the last evaluated fundamental.
     phasor: Vec<[f64; 2]>,
     sums: Vec<Sums>,
@@ -60,7 +60,7 @@ impl Profile {
     pub fn new(time: &[f64], values: &[f64], harmonics: usize) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
-        let rows = Nodes::from_rows(time, &centred);
+        let rows = FoldedRows::from_rows(time, &centred);
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
@@ -139,7 +139,7 @@ impl Profile {
 
     /// RSS from an orthogonal decomposition, for columns that are nearly dependent on the given rows.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
-        let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
+        let FoldedRows { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.duration));
         let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
         // A pair of instants has the weight √2; a single instant has the sign of its side in `skew`.
@@ -214,8 +214,8 @@ fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }
 
-/// Sums over `nodes` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
-fn accumulate(nodes: &Nodes, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
+/// Sums over `folded_rows` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
+fn accumulate(nodes: &FoldedRows, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
     sums.fill(Sums::default());
     for start in (0..nodes.time.len()).step_by(LANES) {
         let turned = lanes(phasor, start);

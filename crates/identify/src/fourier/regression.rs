@@ -86,8 +86,8 @@ impl Equations {
             signal[rows.end..].fill(0.0);
             basis.moments(&signal)
         });
-        let by_rate = by_heading.each_ref().map(|moments| basis.moments_of_derivative(moments));
-        let by_acceleration = by_rate.each_ref().map(|moments| basis.moments_of_derivative(moments));
+        let by_rate = by_heading.each_ref().map(|moments| basis.derivative_moments(moments));
+        let by_acceleration = by_rate.each_ref().map(|moments| basis.derivative_moments(moments));
         let covariance = basis.unscaled_covariance() * noise_variance;
         self.trials.push(Block { moments: [by_rate, by_acceleration], covariance });
     }

@@ -85,8 +85,8 @@ pub fn sample_triples(
     seed: u64,
 ) -> Result<SampledTriples, IdentifyError> {
     if instants.len() < 3 {
-        let what = "instants with the rudder at rest";
-        return Err(IdentifyError::TooFewPoints { what, needed: 3, count: instants.len() });
+        let kind = "instants with the rudder at rest";
+        return Err(IdentifyError::TooFewPoints { kind, needed: 3, count: instants.len() });
     }
     let scale = [standard_deviation(instants, |i| i.yaw_acceleration), standard_deviation(instants, |i| i.rudder)];
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
@@ -94,7 +94,7 @@ pub fn sample_triples(
     while drawn.answers.len() < count {
         if drawn.tried == count * DRAWS_PER_TRIPLE {
             let (needed, count) = (count, drawn.answers.len());
-            return Err(IdentifyError::TooFewPoints { what: "usable triples of instants", needed, count });
+            return Err(IdentifyError::TooFewPoints { kind: "usable triples of instants", needed, count });
         }
         let chosen: [usize; 3] = std::array::from_fn(|_| generator.random_range(0..instants.len()));
         if chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2] {
@@ -208,6 +208,6 @@ mod tests {
         let mut instants = exact(&Case::default());
         instants.retain(|i| (i.rudder - 10f64.to_radians()).abs() < 1e-12);
         let error = sample_triples(&instants, Selection::Uniform, 10, 1).expect_err("one rudder angle");
-        assert_eq!(error, IdentifyError::TooFewPoints { what: "usable triples of instants", needed: 10, count: 0 });
+        assert_eq!(error, IdentifyError::TooFewPoints { kind: "usable triples of instants", needed: 10, count: 0 });
     }
 }

@@ -14,7 +14,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 use ship::vessel::prime::is_trial_specific;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::expected::HullFormPrior;
+use super::form_prior::HullFormPrior;
 
 /// Maximum ratio of posterior to prior variance of an informed direction.
 const MAX_RATIO: f64 = 0.9;
@@ -43,14 +43,14 @@ impl PriorCheck {
 
     /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` if
     /// the records add no information.
-    pub(super) fn of(expected: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn from_fit(prior: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
-            (0..values.len()).filter(|&place| !is_trial_specific(expected.coefficients[place].key)).collect();
+            (0..values.len()).filter(|&place| !is_trial_specific(prior.coefficients[place].key)).collect();
         let of_ship =
             |matrix: &DMatrix<f64>| DMatrix::from_fn(places.len(), places.len(), |i, j| matrix[(places[i], places[j])]);
-        let before = of_ship(&Cholesky::new(expected.precision.clone())?.inverse());
+        let before = of_ship(&Cholesky::new(prior.precision.clone())?.inverse());
         let root = Cholesky::new(before)?.l();
-        let shift = values - expected.mean();
+        let shift = values - prior.mean();
         let shift = root.solve_lower_triangular(&DVector::from_fn(places.len(), |i, _| shift[places[i]]))?;
         let half = root.solve_lower_triangular(&of_ship(covariance))?;
         let eigen = SymmetricEigen::new(root.solve_lower_triangular(&half.transpose())?);
@@ -59,7 +59,7 @@ impl PriorCheck {
         let chi_square: f64 = squares.iter().sum();
         let law = ChiSquared::new(squares.len() as f64).ok()?;
         let departure = |&place: &usize| {
-            let coefficient = &expected.coefficients[place];
+            let coefficient = &prior.coefficients[place];
             (coefficient.key, (values[place] - coefficient.mean) / coefficient.sd)
         };
         let mut shifts: Vec<(&'static str, f64)> = places.iter().map(departure).collect();

@@ -41,8 +41,8 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
 /// deviations of the prior of her particulars.
 fn after(ship: &HullParticulars, form: &str, all: &[EarlierHull], key: &str) -> [f64; 2] {
     let expected = HullFormPrior::candidates(Some(ship), all);
-    let expected = expected.into_iter().find(|own| own.form.as_str() == form).expect("known");
-    let place = expected.coefficients.iter().position(|own| own.key == key).expect("known");
+    let expected = expected.into_iter().find(|hull| hull.form.as_str() == form).expect("known");
+    let place = expected.coefficients.iter().position(|term| term.key == key).expect("known");
     let (own, generic) = (expected.coefficients[place], expected.form.coefficients()[place]);
     [(own.mean - generic.mean) / generic.sd, own.sd / generic.sd]
 }
@@ -103,8 +103,8 @@ fn another_draught_moves_what_is_expected_by_the_formulas() {
     let ballast = HullParticulars { draught: Some(0.3), block_coefficient: Some(0.78), ..SHIP };
     assert_eq!(Likeness::from_particulars(&SHIP, &ballast), Likeness::OtherHull);
     let of = |ship: &HullParticulars, all: &[EarlierHull]| {
-        let expected = HullFormPrior::candidates(Some(ship), all).into_iter().find(|own| own.form.as_str() == "mmg");
-        *expected.expect("known").coefficients.iter().find(|own| own.key == "Nr").expect("known")
+        let expected = HullFormPrior::candidates(Some(ship), all).into_iter().find(|hull| hull.form.as_str() == "mmg");
+        *expected.expect("known").coefficients.iter().find(|term| term.key == "Nr").expect("known")
     };
     let (full, light) = (of(&SHIP, &[]), of(&ballast, &[]));
     let found = of(&ballast, &[earlier(SHIP, "mmg")]);
@@ -138,14 +138,14 @@ fn particulars_that_are_missing_are_those_of_the_earlier_ship() {
     let bare = HullParticulars { length: LENGTH, speed: SPEED, ..HullParticulars::default() };
     let of = |ship: &HullParticulars| {
         let all = HullFormPrior::candidates(Some(ship), &[earlier(SHIP, "mmg")]);
-        all.into_iter().find(|own| own.form.as_str() == "mmg").expect("known").mean()
+        all.into_iter().find(|hull| hull.form.as_str() == "mmg").expect("known").mean()
     };
     assert!((of(&bare) - of(&SHIP)).amax() < 1e-12);
 }
 
 fn left_by(estimate: &HullEstimate) -> EarlierHull {
     EarlierHull {
-        form: estimate.expected.form.clone(),
+        form: estimate.prior.form.clone(),
         particulars: SHIP,
         values: estimate.values.clone(),
         covariance: estimate.covariance.clone(),
@@ -160,9 +160,9 @@ fn quadratic(all: &[EarlierHull]) -> HullFormPrior {
 fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
     let track = |trial: &Trial| HullTrack::from_trial(trial, &estimate.reference).expect("a record");
     let tracks: Vec<HullTrack> = others.iter().map(track).collect();
-    let mut problem = HullObjective::new(&estimate.expected, &tracks);
+    let mut problem = HullObjective::new(&estimate.prior, &tracks);
     let left = problem.misfits(estimate.values.as_slice()).expect("a ship");
-    left.iter().map(|own| own.whole).sum::<f64>() / left.len() as f64
+    left.iter().map(|error| error.whole).sum::<f64>() / left.len() as f64
 }
 
 fn half_of(trial: &Trial) -> Trial {
@@ -189,7 +189,7 @@ fn half_a_trial_after_two_tells_as_much_as_a_whole_one() {
         let whole = fit(std::slice::from_ref(&third), expected).expect("a fit");
         let after_trials = HullFormPrior::candidates(Some(&SHIP), &[earlier]).swap_remove(place);
         let half = fit(&[half_of(&third)], &after_trials).expect("a fit");
-        let [half_square, whole_square] = [&half, &whole].map(|own| error_on(own, &others));
+        let [half_square, whole_square] = [&half, &whole].map(|fit| error_on(fit, &others));
         squares = [squares[0] + half_square, squares[1] + whole_square];
         let ratio = (half_square / whole_square).sqrt();
         assert!(ratio < 1.3, "{}: {ratio}", expected.form.as_str());

@@ -36,7 +36,7 @@ pub enum HullFitError {
     },
     /// A record begins near rest, where the priors of a hull do not apply.
     #[error("{trial} begins at {share:.2} of the approach speed; begin it in steady approach")]
-    GathersWay {
+    StartsNearRest {
         /// Name of the record.
         trial: String,
         /// Speed in the first row, relative to the approach speed.

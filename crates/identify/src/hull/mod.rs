@@ -7,7 +7,7 @@
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`CoefficientDeviations`], which describe the error of the form and not of a sensor:
+//! with the standard deviations of [`ResidualDeviations`], which describe the error of the form and not of a sensor:
 //! a hull of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every
 //! record, down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw
 //! rate is not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it
@@ -24,7 +24,7 @@
 
 mod conflict;
 mod error;
-mod expected;
+mod form_prior;
 mod moment;
 mod objective;
 mod replayed;
@@ -44,9 +44,9 @@ use trial::Trial;
 
 pub use conflict::PriorCheck;
 pub use error::HullFitError;
-pub use expected::{EarlierHull, HullFormPrior, differs_in_froude_number};
+pub use form_prior::{EarlierHull, HullFormPrior, differs_in_froude_number};
 pub use moment::FormMoment;
-pub use objective::CoefficientDeviations;
+pub use objective::ResidualDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
@@ -54,7 +54,7 @@ pub use weighed::combined;
 
 /// Rules of the Levenberg-Marquardt search.
 const RULES: SearchSettings = SearchSettings {
-    steps: 40,
+    max_steps: 40,
     damping: 1e-2,
     shrink: 0.2,
     trust_ratio: 0.25,
@@ -69,7 +69,7 @@ const RULES: SearchSettings = SearchSettings {
 /// Number of rounds in which the deviations follow the residuals.
 const REWEIGHTINGS: usize = 3;
 
-/// Residual of a record.
+/// Residual of a hull fit on one record: heading errors of its replays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HullResidual {
     /// Name of the record.
@@ -82,11 +82,11 @@ pub struct HullResidual {
     pub initial_yaw_rate: f64,
 }
 
-/// Estimate of the coefficients of a hull, with their covariance.
+/// Estimated coefficients of a hull of three degrees of freedom, with their covariance.
 #[derive(Debug, Clone)]
 pub struct HullEstimate {
-    /// Form, and the prior of the coefficients.
-    pub expected: HullFormPrior,
+    /// Hull form with the prior of its coefficients.
+    pub prior: HullFormPrior,
     /// Length, speed and propeller rate that make the quantities dimensionless.
     pub reference: HullReference,
     /// Values of the coefficients.
@@ -95,7 +95,7 @@ pub struct HullEstimate {
     pub covariance: DMatrix<f64>,
     /// Residuals of the records.
     pub records: Vec<HullResidual>,
-    /// Error of the form as a random moment.
+    /// Model error of the form, as a random yaw moment.
     pub moment: FormMoment,
 }
 
@@ -103,11 +103,11 @@ pub struct HullEstimate {
 ///
 /// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart, an
 /// impossible duration or a start near rest, or if no coefficients near the prior can be replayed.
-pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, HullFitError> {
+pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
-    let form = &expected.form;
-    let mut problem = HullObjective::new(expected, &tracks);
-    let mut start = expected.mean();
+    let form = &prior.form;
+    let mut problem = HullObjective::new(prior, &tracks);
+    let mut start = prior.mean();
     let mut search = minimise(&mut problem, start, &RULES);
     // The weight of a record grows as the hull approaches it, which avoids distant minima.
     for _ in 0..REWEIGHTINGS {
@@ -127,15 +127,15 @@ pub fn fit(trials: &[Trial], expected: &HullFormPrior) -> Result<HullEstimate, H
         window: misfit.window.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
     };
-    let moment = FormMoment::of(
+    let moment = FormMoment::from_misfits(
         &form.with_coefficients(search.estimate.as_slice()).ok_or(HullFitError::NoReplay)?,
         &tracks,
         &misfits,
     );
     let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
     let records = trials.iter().zip(misfits).map(residual).collect();
-    let expected = expected.clone();
-    Ok(HullEstimate { expected, reference, values: search.estimate, covariance, records, moment })
+    let prior = prior.clone();
+    Ok(HullEstimate { prior, reference, values: search.estimate, covariance, records, moment })
 }
 
 /// Reason why no hull can be fitted to these records of one ship; `None` if a fit is possible.
@@ -155,8 +155,8 @@ const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
-    let expected = HullFormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
-    expected.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
+    let priors = HullFormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
+    priors.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
 
 /// Hulls supported by their records: the residual of whole records is at most three times the smallest residual of all
@@ -168,11 +168,11 @@ pub fn supported_hulls(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate
 }
 
 impl HullEstimate {
-    /// Hull, ready for replay.
+    /// Hull with the estimated coefficients at the size and speed of the ship, for replays.
     pub fn scaled_hull<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller } = self.reference;
-        let hull = self.expected.form.with_coefficients(&values).expect("the fit has replayed it");
+        let hull = self.prior.form.with_coefficients(&values).expect("the fit has replayed it");
         ScaledHull { hull, length, speed, propeller }
     }
 
@@ -181,7 +181,7 @@ impl HullEstimate {
     /// deviation exceeds half a turn, beyond the range of a linear law.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::from_trial(trial, &self.reference).ok()?;
-        let [time, mut variance] = heading_variances(&self.expected, &track, self.values.as_slice(), &self.covariance)?;
+        let [time, mut variance] = heading_variances(&self.prior, &track, self.values.as_slice(), &self.covariance)?;
         let residual = self.mean_square();
         variance.iter_mut().for_each(|value| *value += residual);
         if variance.iter().any(|value| *value > PI * PI) {
@@ -192,7 +192,7 @@ impl HullEstimate {
 
     /// Check of the prior against the records; `None` if the records add no information.
     pub fn prior_check(&self) -> Option<PriorCheck> {
-        PriorCheck::of(&self.expected, &self.values, &self.covariance)
+        PriorCheck::from_fit(&self.prior, &self.values, &self.covariance)
     }
 
     /// Mean square residual of whole records, rad².

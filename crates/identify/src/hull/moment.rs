@@ -33,7 +33,7 @@ pub struct FormMoment {
 impl FormMoment {
     /// Random moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
     /// L/U₀ by the residuals of the records, `misfits`.
-    pub(super) fn of(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
+    pub(super) fn from_misfits(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
         let hull = hull.to_real::<Dual<1>>();
         let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;
         let target = mean(&mut misfits.iter().map(|misfit| misfit.window));

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
-use super::expected::HullFormPrior;
+use super::form_prior::HullFormPrior;
 use super::replayed::{ReplayedWindow, replay_rows};
 use super::track::HullTrack;
 use super::turn::HardTurn;
@@ -25,7 +25,7 @@ const MIN_GAIN: f64 = 1e-6;
 /// Standard deviations of the residuals of a hull, which weigh the kinds of reading: even the best form leaves an
 /// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CoefficientDeviations {
+pub struct ResidualDeviations {
     /// Standard deviation of the heading of a whole replay, rad.
     pub whole: f64,
     /// Standard deviation of the heading in a window, rad.
@@ -35,12 +35,11 @@ pub struct CoefficientDeviations {
 }
 
 /// Minimum deviations of a record.
-const MIN_DEVIATIONS: CoefficientDeviations =
-    CoefficientDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+const MIN_DEVIATIONS: ResidualDeviations = ResidualDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search, so large that the hull stays near its prior.
-const FIRST_DEVIATIONS: CoefficientDeviations =
-    CoefficientDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
+const FIRST_DEVIATIONS: ResidualDeviations =
+    ResidualDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean square residuals of a record, and the initial yaw rate of the whole replay, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -60,9 +59,9 @@ struct Starts {
 
 /// Objective of the fit of a form with its priors to records.
 pub(super) struct HullObjective<'a> {
-    expected: &'a HullFormPrior,
+    prior: &'a HullFormPrior,
     tracks: &'a [HullTrack],
-    deviations: Vec<CoefficientDeviations>,
+    deviations: Vec<ResidualDeviations>,
     starts: Vec<Starts>,
     /// `true` once the starts have been fitted.
     is_begun: bool,
@@ -162,18 +161,18 @@ pub(super) fn window_mean_square(
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(expected: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
-        assert!(expected.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
+    pub fn new(prior: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
+        assert!(prior.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
         let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST_DEVIATIONS; tracks.len()];
-        Self { expected, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
+        Self { prior, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
     /// Mean square residuals of every record; `None` if the coefficients are not valid.
     pub fn misfits(&mut self, at: &[f64]) -> Option<Vec<Misfit>> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
-        let hull = self.expected.form.with_coefficients(&values)?;
+        let hull = self.prior.form.with_coefficients(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
         let misfit = |(track, starts): (&HullTrack, &mut Starts)| {
             let mut misfit = Misfit::default();
@@ -194,7 +193,7 @@ impl<'a> HullObjective<'a> {
     pub fn reweigh(&mut self, at: &[f64]) {
         let misfits = self.misfits(at).unwrap_or_default();
         for (deviations, misfit) in self.deviations.iter_mut().zip(misfits) {
-            *deviations = CoefficientDeviations {
+            *deviations = ResidualDeviations {
                 whole: MIN_DEVIATIONS.whole.max(misfit.whole.sqrt()),
                 window: MIN_DEVIATIONS.window.max(misfit.window.sqrt()),
                 speed: MIN_DEVIATIONS.speed.max(misfit.speed.sqrt()),
@@ -210,8 +209,8 @@ impl<'a> HullObjective<'a> {
 
     /// Gradient Λ (μ − θ) and value (θ − μ)ᵀ Λ (θ − μ) of the prior.
     fn prior_terms(&self, at: &[f64]) -> (DVector<f64>, f64) {
-        let departure = self.expected.mean() - DVector::from_column_slice(at);
-        let pull = &self.expected.precision * &departure;
+        let departure = self.prior.mean() - DVector::from_column_slice(at);
+        let pull = &self.prior.precision * &departure;
         let square = pull.dot(&departure);
         (pull, square)
     }
@@ -219,17 +218,17 @@ impl<'a> HullObjective<'a> {
 
 impl Objective for HullObjective<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        self.expected.coefficients[unknown].ends
+        self.prior.coefficients[unknown].ends
     }
 
     /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard
     /// over.
     fn value(&mut self, at: &[f64]) -> f64 {
-        let (Some(misfits), Some(hull)) = (self.misfits(at), self.expected.form.with_coefficients(at)) else {
+        let (Some(misfits), Some(hull)) = (self.misfits(at), self.prior.form.with_coefficients(at)) else {
             return f64::INFINITY;
         };
-        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &CoefficientDeviations)| {
-            let CoefficientDeviations { whole, window, speed } = *deviations;
+        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &ResidualDeviations)| {
+            let ResidualDeviations { whole, window, speed } = *deviations;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
             let headings = share(misfit.whole, whole) + share(misfit.window, window);
             self.weight(track) * (headings + share(misfit.speed, speed))
@@ -241,17 +240,17 @@ impl Objective for HullObjective<'_> {
 
     fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
         let value = self.value(at);
-        *normal = NormalEquations { matrix: self.expected.precision.clone(), gradient: self.prior_terms(at).0 };
+        *normal = NormalEquations { matrix: self.prior.precision.clone(), gradient: self.prior_terms(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-        let Some(hull) = self.expected.form.with_coefficients(&values) else { return f64::INFINITY };
+        let Some(hull) = self.prior.form.with_coefficients(&values) else { return f64::INFINITY };
         for departure in self.turn.departures(&hull) {
             let by = DVector::from_column_slice(&departure.derivatives[..at.len()]);
             normal.matrix.ger(1.0, &by, &by, 1.0);
             normal.gradient.axpy(-departure.value, &by, 1.0);
         }
         for ((track, starts), deviations) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
-            let CoefficientDeviations { whole, window, speed } = *deviations;
+            let ResidualDeviations { whole, window, speed } = *deviations;
             let lengths = self.weight(track);
             let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
@@ -322,19 +321,19 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 /// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
 /// coefficients are not valid.
 pub(super) fn heading_variances(
-    expected: &HullFormPrior,
+    prior: &HullFormPrior,
     track: &HullTrack,
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(expected, std::slice::from_ref(track)).misfits(values)?[0].initial_yaw_rate;
+    let rate = HullObjective::new(prior, std::slice::from_ref(track)).misfits(values)?[0].initial_yaw_rate;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
     let ReplayedWindow { rows, .. } =
-        replay_rows(&expected.form.with_coefficients(&variables)?, track, track.whole, start);
+        replay_rows(&prior.form.with_coefficients(&variables)?, track, track.whole, start);
     let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;

@@ -80,7 +80,7 @@ fn quadratic(trials: &[Trial]) -> HullEstimate {
 #[test]
 fn a_hull_of_the_form_comes_back() {
     let fitted = quadratic(&records(|_| 0.0));
-    for (place, (prior, truth)) in fitted.expected.coefficients.iter().zip(TRUTH).enumerate() {
+    for (place, (prior, truth)) in fitted.prior.coefficients.iter().zip(TRUTH).enumerate() {
         let (value, sd) = (fitted.values[place], fitted.covariance[(place, place)].sqrt());
         assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", prior.symbol);
         assert!(prior.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", prior.symbol);
@@ -143,7 +143,7 @@ fn a_measured_wind_tells_how_it_acts() {
     let [found, blind] = [measured, blown].map(|trials| quadratic(&trials));
     let [windage, truth] = [found.values[18], TRUTH[18]];
     assert!((windage / truth - 1.0).abs() < 0.05, "{windage}");
-    assert_eq!(blind.values[18], blind.expected.coefficients[18].mean);
+    assert_eq!(blind.values[18], blind.prior.coefficients[18].mean);
     assert!(3.0 * found.mean_square().sqrt() < blind.mean_square().sqrt(), "{found:?} {blind:?}");
 }
 
@@ -155,12 +155,12 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     let [fitted, other] = [20.0, 10.0].map(|angle| record(&ship, [angle, angle], |_| 0.0));
     let dimensions = HullParticulars { length: LENGTH, speed: SPEED, beam: Some(1.27), ..HullParticulars::default() };
     for form in HullForm::candidates(Some(&dimensions)) {
-        let expected = HullFormPrior::from_form(form);
-        let estimate = fit(std::slice::from_ref(&fitted), &expected).expect("a fit");
+        let prior = HullFormPrior::from_form(form);
+        let estimate = fit(std::slice::from_ref(&fitted), &prior).expect("a fit");
         let tracks = [HullTrack::from_trial(&other, &estimate.reference).expect("a record")];
-        let mut problem = HullObjective::new(&expected, &tracks);
+        let mut problem = HullObjective::new(&prior, &tracks);
         let left = to_deg(problem.misfits(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
-        assert!(left < 3.5, "{}: {left}", expected.form.as_str());
+        assert!(left < 3.5, "{}: {left}", prior.form.as_str());
     }
 }
 
@@ -169,7 +169,7 @@ fn the_mirrored_records_give_the_mirrored_hull() {
     let trials = records(|_| 0.0);
     let mirrored: Vec<Trial> = trials.iter().map(in_the_mirror).collect();
     let (original, reflected) = (quadratic(&trials), quadratic(&mirrored));
-    for (place, coefficient) in original.expected.coefficients.iter().enumerate() {
+    for (place, coefficient) in original.prior.coefficients.iter().enumerate() {
         let side = if ["b", "delta_r"].contains(&coefficient.key) { -1.0 } else { 1.0 };
         let [value, other] = [original.values[place], side * reflected.values[place]];
         assert!((value - other).abs() < 1e-3 * coefficient.sd, "{}: {value} {other}", coefficient.symbol);
@@ -212,8 +212,7 @@ fn fitted_to(channels: &[Channel]) -> HullEstimate {
             let noise = |value: &f64| value + deviation * random.sample::<f64, _>(StandardNormal);
             (channel, trial.channel(channel).expect("recorded").iter().map(noise).collect::<Vec<f64>>())
         };
-        let channels =
-            channels.iter().map(|channel| read(*channel)).chain([(Channel::Rudder, trial.rudder().to_vec())]);
+        let channels = channels.iter().map(|signal| read(*signal)).chain([(Channel::Rudder, trial.rudder().to_vec())]);
         let columns = Columns { time: trial.time().to_vec(), channels: channels.collect(), unknown: Vec::new() };
         let ship = trial.particulars().expect("declared");
         Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
@@ -244,7 +243,7 @@ fn the_hulls_that_records_speak_for_are_near_them() {
     // out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(found[0].expected.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
+    assert!(found[0].prior.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
     assert!(supported_hulls(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
 }
 
@@ -259,7 +258,7 @@ fn a_trial_at_slow_ahead_is_one() {
 
 #[test]
 fn records_that_tell_no_hull_are_refused() {
-    let expected = HullFormPrior::from_form(form());
+    let prior = HullFormPrior::from_form(form());
     let refused = |change: fn(&mut Columns)| {
         let trial = &records(|_| 0.0)[0];
         let channels = [Channel::Heading, Channel::Speed].map(|key| (key, trial.channel(key).expect("one").to_vec()));
@@ -269,12 +268,12 @@ fn records_that_tell_no_hull_are_refused() {
         change(&mut columns);
         let bare = Trial::new("bare", trial.origin().clone(), columns).expect("a record");
         let known = bare.clone().with_particulars(Particulars { length: LENGTH, speed: SPEED });
-        [bare, known].map(|trial| fit(&[trial], &expected).err())
+        [bare, known].map(|trial| fit(&[trial], &prior).err())
     };
     let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.3 * SPEED);
     let [bare, slow] = refused(slow);
     assert_eq!(bare, Some(HullFitError::Particulars));
-    assert!(matches!(slow, Some(HullFitError::GathersWay { .. })), "{slow:?}");
+    assert!(matches!(slow, Some(HullFitError::StartsNearRest { .. })), "{slow:?}");
     let short = |columns: &mut Columns| {
         columns.time.truncate(10);
         columns.channels.values_mut().for_each(|values| values.truncate(10));

@@ -87,14 +87,14 @@ impl HullTrack {
         let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
         let share = track.start[0] * reference.length / (track.second * approach);
         match share < MIN_START_SPEED {
-            true => Err(HullFitError::GathersWay { trial: trial.name().to_owned(), share }),
+            true => Err(HullFitError::StartsNearRest { trial: trial.name().to_owned(), share }),
             false => Ok(track),
         }
     }
 
     /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
     /// headings.
-    pub fn of_rudder(rudder: f64, duration: f64) -> Self {
+    pub fn from_rudder(rudder: f64, duration: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
             rudder: vec![rudder; 2],

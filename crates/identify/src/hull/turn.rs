@@ -31,7 +31,7 @@ pub(super) struct HardTurn([HullTrack; 2]);
 
 impl HardTurn {
     pub fn new() -> Self {
-        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::of_rudder(rudder, DURATION_LENGTHS)))
+        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::from_rudder(rudder, DURATION_LENGTHS)))
     }
 
     /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use ship::Input;
     use ship::integrate::RungeKutta4;
-    use ship::ships::{Model, Ship};
+    use ship::ships::{Ship, ShipModel};
     use ship::vessel::prime::HullForm;
 
     /// Published hulls turn as expected within 2.5 standard deviations, as do the forms before any record.
@@ -72,7 +72,7 @@ mod tests {
 
     /// Dimensionless yaw rate r L/U of a hull in the steady turn, and the pivot point ahead of midship, L.
     fn steady(ship: &Ship) -> Option<(String, [f64; 2])> {
-        let (Model::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
+        let (ShipModel::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
         let step = 0.02 * scale.length / scale.speed;
         let mut state = vec![0.0; hull.dimension()];
         hull.approach(0.0, 0.0, &mut state);

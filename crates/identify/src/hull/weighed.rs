@@ -4,10 +4,10 @@ use nalgebra::Cholesky;
 use ship::vessel::prime::HullForm;
 
 use super::conflict::PriorCheck;
-use super::expected::{EarlierHull, HullFormPrior};
+use super::form_prior::{EarlierHull, HullFormPrior};
 
-/// Estimate of some trials combined with the estimate of earlier trials, which it does not include yet, and the check
-/// of both against each other; `None` if the earlier trials have no information on its form.
+/// Hull estimate updated with the estimates of earlier trials that it does not include yet, and the prior check of
+/// both; `None` if the earlier trials have no information on its form.
 ///
 /// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated
 /// as normal laws: if they are far apart, a fit with the earlier trials as prior is better.
@@ -26,6 +26,6 @@ pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(Earlie
     let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
     let before =
         HullFormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
-    let check = before.and_then(|before| PriorCheck::of(&before, &after.values, &after.covariance));
+    let check = before.and_then(|before| PriorCheck::from_fit(&before, &after.values, &after.covariance));
     Some((after, check))
 }

@@ -98,7 +98,7 @@ pub(super) struct Solution {
 
 impl Solution {
     /// Solution of the equations; the rows of the pieces stay projected.
-    pub(super) fn of(pieces: &mut [IntegratedStretch], condition_limit: f64) -> Result<Self, IdentifyError> {
+    pub(super) fn from_stretches(pieces: &mut [IntegratedStretch], max_condition: f64) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {
             piece.project(&mut lengths, &mut products);
@@ -107,8 +107,8 @@ impl Solution {
         let scaled = Matrix3::from_fn(|i, j| products[(i, j)] * scale[i] * scale[j]);
         let smallest: f64 = SymmetricEigen::new(scaled).eigenvalues.min();
         let condition = if smallest > 0.0 { 1.0 / smallest.sqrt() } else { f64::INFINITY };
-        let singular = || IdentifyError::Singular { condition, limit: condition_limit };
-        if condition.is_nan() || condition > condition_limit {
+        let singular = || IdentifyError::Singular { condition, limit: max_condition };
+        if condition.is_nan() || condition > max_condition {
             return Err(singular());
         }
         let scaled_inverse = scaled.cholesky().ok_or_else(singular)?.inverse();

@@ -25,7 +25,7 @@ pub(super) struct ResidualNoise {
 
 impl ResidualNoise {
     /// Noise from projected pieces and their solution.
-    pub fn of(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
+    pub fn from_stretches(pieces: &[IntegratedStretch], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
         let degrees_of_freedom = count as f64 - (SHARED_PARAMETERS + 2 * pieces.len()) as f64;
         let (mut squares, mut products) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Columns of heading and yaw rate of which a first-order response is a linear combination.
+//! Columns of heading and yaw rate whose linear combinations are the first-order responses for one 1/T.
 
 /// Columns of the heading except the constant column, at the observed rows.
 #[derive(Debug, Clone, Default)]
@@ -56,7 +56,7 @@ impl RateColumns {
     }
 }
 
-/// Yaw rates of the columns.
+/// Columns of the yaw rate, the time derivatives of the heading columns.
 #[derive(Debug, Clone, Default)]
 pub struct RateColumns {
     /// exp(−a (t − t₁)).

@@ -22,16 +22,20 @@ pub struct NoiseVector {
     pub log: [f64; NOISE_ENTRIES],
 }
 
-/// Index of q/σ.
-pub const LEVEL: usize = 0;
-/// Index of τ.
-pub const CORRELATION: usize = 1;
-/// Index of the rudder error.
-pub const RUDDER: usize = 2;
-/// Index of the correlation time of the compass error.
-pub const COMPASS: usize = 3;
-/// Index of σ_r/σ.
-pub const GYRO: usize = 4;
+/// Index of log(q/σ) in a noise vector.
+pub const LEVEL_INDEX: usize = 0;
+
+/// Index of log τ.
+pub const CORRELATION_INDEX: usize = 1;
+
+/// Index of the logarithm of the rudder error.
+pub const RUDDER_INDEX: usize = 2;
+
+/// Index of the log correlation time of the compass error.
+pub const COMPASS_INDEX: usize = 3;
+
+/// Index of log(σ_r/σ).
+pub const GYRO_INDEX: usize = 4;
 
 impl NoiseVector {
     /// Noise vector of a noise law for a ship.
@@ -58,16 +62,16 @@ impl NoiseVector {
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
             heading_sd,
-            heading_correlation: self.coloured.then(|| self.log[COMPASS].exp()),
-            yaw_rate_sd: gyro.then(|| size(GYRO)),
+            heading_correlation: self.coloured.then(|| self.log[COMPASS_INDEX].exp()),
+            yaw_rate_sd: gyro.then(|| size(GYRO_INDEX)),
             moment: self.moment,
-            moment_level: if has_moment { size(LEVEL) } else { 0.0 },
+            moment_level: if has_moment { size(LEVEL_INDEX) } else { 0.0 },
             moment_correlation: match self.moment {
-                MomentKind::OrnsteinUhlenbeck => self.log[CORRELATION].exp(),
+                MomentKind::OrnsteinUhlenbeck => self.log[CORRELATION_INDEX].exp(),
                 MomentKind::White => 0.0,
                 MomentKind::None | MomentKind::Walk => f64::INFINITY,
             },
-            rudder_sd: if self.rudder { size(RUDDER) / gain.abs() } else { 0.0 },
+            rudder_sd: if self.rudder { size(RUDDER_INDEX) / gain.abs() } else { 0.0 },
         }
     }
 
@@ -89,11 +93,11 @@ impl NoiseVector {
         NoiseParameters {
             inverse_time,
             moment: self.moment,
-            level: size(LEVEL),
-            rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION]).exp() } else { 0.0 },
-            rudder: self.rudder.then(|| size(RUDDER)),
-            compass_rate: self.coloured.then(|| (-self.log[COMPASS]).exp()),
-            gyro: size(GYRO),
+            level: size(LEVEL_INDEX),
+            rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION_INDEX]).exp() } else { 0.0 },
+            rudder: self.rudder.then(|| size(RUDDER_INDEX)),
+            compass_rate: self.coloured.then(|| (-self.log[COMPASS_INDEX]).exp()),
+            gyro: size(GYRO_INDEX),
         }
     }
 }

@@ -5,10 +5,10 @@ use estimation::kalman::Reading;
 use super::track::{Track, durations_differ};
 
 /// Index of the compass among the sensors.
-pub const HEADING: usize = 0;
+pub const COMPASS_SENSOR: usize = 0;
 
 /// Index of the gyro among the sensors.
-pub const YAW_RATE: usize = 1;
+pub const GYRO_SENSOR: usize = 1;
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,10 +61,10 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading::new(step, HEADING));
+                schedule.readings.push(Reading::new(step, COMPASS_SENSOR));
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading::new(step.filter(|_| !both), YAW_RATE));
+                schedule.readings.push(Reading::new(step.filter(|_| !both), GYRO_SENSOR));
             }
         }
         schedule
@@ -86,7 +86,7 @@ impl Schedule {
             return heading.to_vec();
         }
         let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
-        let next = |reading: &Reading| if reading.sensor() == HEADING { heading.next() } else { yaw_rate.next() };
+        let next = |entry: &Reading| if entry.sensor() == COMPASS_SENSOR { heading.next() } else { yaw_rate.next() };
         let mut column = Vec::with_capacity(self.readings.len());
         column.extend(self.readings.iter().filter_map(next).copied());
         column

@@ -43,7 +43,7 @@ pub struct Track {
 struct Interval {
     /// Duration, s.
     duration: f64,
-    /// Rudder rate, rad/s, before the corner if there is one.
+    /// Rudder rate at the beginning of the interval, rad/s.
     rudder_rate: f64,
 }
 
@@ -371,7 +371,7 @@ impl Track {
     }
 }
 
-/// `true` if a step requires a transition other than that of the last step.
+/// `true` if two durations, s, differ so much that the transition must be computed again.
 #[inline(always)]
 pub fn durations_differ(last: f64, h: f64) -> bool {
     (last - h).abs() > STEP_TOLERANCE * h.abs()

@@ -15,9 +15,9 @@ use super::search::Maximum;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::likelihood::track::{Coefficients, Track, is_backward};
-use crate::output_error::{CONDITION_LIMIT, COURSE_UNSTABLE, MIN_GAIN_DEVIATIONS, response_covariance};
+use crate::output_error::{MAX_CONDITION, MIN_GAIN_DEVIATIONS, UNSTABLE_WARNING, response_covariance};
 use crate::profile::invert;
 use crate::robust;
 use trial::noise_model::{MomentKind, NoiseModel};
@@ -43,7 +43,7 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
             reduced -= Matrix3::from_fn(|i, j| explained[(i, j)]);
         }
     }
-    invert(&reduced, CONDITION_LIMIT)
+    invert(&reduced, MAX_CONDITION)
 }
 
 /// Degrees of freedom of the variances of K, T and δ_r, the minimum of the three: the uncertainty of the noise sizes
@@ -80,7 +80,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
                 };
                 let change = (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE);
                 // A tied compass error shrinks as its entry grows.
-                let tied = entry == RUDDER && record.declared.is_some();
+                let tied = entry == RUDDER_INDEX && record.declared.is_some();
                 if tied { change + motions[number] * 2.0 } else { change }
             })
             .collect();
@@ -131,7 +131,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let readings: usize = parts.iter().map(|part| part.readings).sum();
     let jumps: usize = records.iter().map(|record| record.jumps.len()).sum();
     let freedom = readings as f64 - (SHARED_PARAMETERS + 2 * trials.len() + jumps) as f64;
-    let singular = |condition| IdentifyError::Singular { condition, limit: CONDITION_LIMIT };
+    let singular = |condition| IdentifyError::Singular { condition, limit: MAX_CONDITION };
     let (inverse, condition) = covariance(&maximum.derivatives.information).map_err(singular)?;
     let (averaged, degrees_of_freedom) = averaged_covariance(&chosen, freedom);
     let white = response_covariance(&averaged, &response, degrees_of_freedom);
@@ -142,12 +142,12 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let scores: Vec<[Vec<f64>; 3]> = (maximum.derivatives.scores.iter().zip(parts))
         .map(|(scores, part)| scores.each_ref().map(|column| column.iter().map(|x| x / part.variance).collect()))
         .collect();
-    let long_run = robust::newey_west_of_three(&scores) * (readings as f64 / freedom);
+    let long_run = robust::newey_west_three(&scores) * (readings as f64 / freedom);
     let robust_covariance = response_covariance(&(inverse * long_run * inverse), &response, freedom);
     let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::reported_covariance(white, &robust_covariance, lag1, readings);
     let mut warnings = Vec::from_iter(warning);
-    warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(COURSE_UNSTABLE)));
+    warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(UNSTABLE_WARNING)));
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
     warnings.extend(at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))
@@ -295,7 +295,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noi
     }
     let record = Record::new(track, noise.rudder_sd > 0.0, None);
     let information = record.information(truth.inverse_T, &NoiseVector::from_model(noise, truth), &coefficients)?;
-    let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
+    let (inverse, _) = invert(&information, MAX_CONDITION).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);
     Some(Covariance { degrees_of_freedom: None, ..response_covariance(&covariance, truth, 1.0) })
 }

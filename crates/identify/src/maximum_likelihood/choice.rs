@@ -11,9 +11,9 @@ use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::{COMPASS, RUDDER};
+use crate::likelihood::parameters::{COMPASS_INDEX, RUDDER_INDEX};
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
-use crate::output_error::{self, CONDITION_LIMIT, MIN_ROWS};
+use crate::output_error::{self, MAX_CONDITION, MIN_ROWS};
 use crate::replay::best_start;
 use crate::robust;
 use crate::samples::checked_track;
@@ -107,8 +107,7 @@ impl PreparedRecords {
         let gyro = settings.yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
         let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
-        let declared =
-            settings.rudder == RudderChoice::Declared && trials.iter().all(|trial| declared_sd(trial).is_some());
+        let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
         let records = tracks
             .into_iter()
@@ -157,12 +156,11 @@ impl PreparedRecords {
         }
         kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jumps.clone_from(&record.jumps));
         let Some(&(lowest, _)) = all.first() else {
-            return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: CONDITION_LIMIT });
+            return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: MAX_CONDITION });
         };
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
         let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
-        let maxima: Vec<(f64, Maximum)> =
-            all.into_iter().map(weigh).filter(|(weight, _)| *weight > MIN_WEIGHT).collect();
+        let maxima: Vec<(f64, Maximum)> = all.into_iter().map(weigh).filter(|(share, _)| *share > MIN_WEIGHT).collect();
         let end = maxima[0].1.point.inverse_time;
         let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
         Ok(ChosenLaw { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })
@@ -212,7 +210,7 @@ fn bic(records: &[Record], point: &Point) -> f64 {
             // The entry of a declared rudder error represents the size of the compass error, which all laws count.
             vector
                 .active_entries(record.has_gyro())
-                .filter(|&entry| entry != RUDDER || record.declared.is_none())
+                .filter(|&entry| entry != RUDDER_INDEX || record.declared.is_none())
                 .count()
         })
         .sum();
@@ -238,7 +236,7 @@ fn fit_laws(
         all.clear();
     }
     for (a, vectors) in coloured_starts {
-        let starts = search.entry_starts(a, &vectors, COMPASS);
+        let starts = search.entry_starts(a, &vectors, COMPASS_INDEX);
         let start = search.best_start(&starts, |point| point.restricted);
         all.extend(start.and_then(|start| search.highest(start)));
     }
@@ -285,7 +283,9 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         }
         let restricted = |point: &Point| point.restricted;
         let start = match kind {
-            MomentKind::None if none[0].rudder => search.best_start(&search.entry_starts(a, &none, RUDDER), restricted),
+            MomentKind::None if none[0].rudder => {
+                search.best_start(&search.entry_starts(a, &none, RUDDER_INDEX), restricted)
+            }
             MomentKind::None => search.evaluate((a, none.clone())),
             MomentKind::White | MomentKind::Walk => {
                 search.best_level(&search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector, Matrix3};
 use ship::first_order::State;
 
 use super::weight::{Weight, weigh};
-use crate::likelihood::schedule::HEADING;
+use crate::likelihood::schedule::COMPASS_SENSOR;
 use crate::likelihood::tangents::fill_with_tangents;
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
@@ -60,7 +60,7 @@ struct RecordColumns {
 #[derive(Debug, Clone)]
 pub(super) struct WhitenedColumns {
     pub filter: Whitener,
-    /// Triangular factor from the orthonormal columns to those of the initial state and the jumps.
+    /// Triangular factor R of the nuisance columns Q R of the initial state and the jumps.
     triangle: DMatrix<f64>,
     pub projected: [Vec<f64>; 3],
     /// Derivatives of [`RecordColumns`], projected off the nuisance columns.
@@ -146,7 +146,7 @@ impl Record {
         self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// Columns of a ship with this 1/T; those of the last 1/T are kept.
+    /// Columns of a ship with this 1/T; the columns of the last 1/T are cached.
     fn columns(&self, inverse_time: f64) -> Rc<RecordColumns> {
         let mut last = self.last_columns.borrow_mut();
         if let Some(columns) = last.as_ref().filter(|columns| columns.is_of(self, inverse_time)) {
@@ -221,7 +221,7 @@ impl RecordColumns {
         fill_with_tangents(track, inverse_time, &mut motion, &mut by_time);
         let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_time.headings());
         let mut rates = instrument_rows(0.0, motion.rates.all(), &track.rates, by_time.rates.all());
-        let row = |reading: &Reading| if reading.sensor() == HEADING { headings.next() } else { rates.next() };
+        let row = |reading: &Reading| if reading.sensor() == COMPASS_SENSOR { headings.next() } else { rates.next() };
         let mut rows = Vec::with_capacity(record.len());
         rows.extend(schedule.readings.iter().filter_map(row));
         Self { inverse_time, rows, jumps: jumps.iter().map(|&jump| record.step_at(jump)).collect() }

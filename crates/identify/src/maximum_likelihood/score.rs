@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::likelihood::{NoiseVector, parameters::RUDDER};
+use crate::likelihood::{NoiseVector, parameters::RUDDER_INDEX};
 use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use trial::noise_model::MomentKind;
@@ -99,7 +99,7 @@ impl ScoreAndInformation {
         }];
         for (entry, there) in active.into_iter().zip(there) {
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
-            if is_tied && entry == RUDDER {
+            if is_tied && entry == RUDDER_INDEX {
                 // A smaller compass error makes a given rudder error larger in its units.
                 slope.log_variance.iter_mut().for_each(|by| *by += slope.tied);
             }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::point::{Point, Record, SHARED_PARAMETERS, Start, evaluate};
 use super::score::{ScoreAndInformation, score_and_information};
 use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
+use crate::likelihood::parameters::{COMPASS_INDEX, CORRELATION_INDEX, GYRO_INDEX, LEVEL_INDEX, RUDDER_INDEX};
 use trial::noise_model::MomentKind;
 
 /// Predicted decrease of −log L at convergence: a hundredth of a standard deviation of the noise. A search over 1/T
@@ -53,10 +53,10 @@ impl Ranges {
     fn range(&self, vector: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
-            LEVEL => [Self::level(vector.moment, 1e-3, duration), Self::level(vector.moment, 1e3, spacing)],
-            CORRELATION => [0.5 * spacing, 10.0 * duration],
-            RUDDER => [2e-3 / (duration * duration), 2e3 / (spacing * spacing)],
-            COMPASS => [0.1 * spacing, duration],
+            LEVEL_INDEX => [Self::level(vector.moment, 1e-3, duration), Self::level(vector.moment, 1e3, spacing)],
+            CORRELATION_INDEX => [0.5 * spacing, 10.0 * duration],
+            RUDDER_INDEX => [2e-3 / (duration * duration), 2e3 / (spacing * spacing)],
+            COMPASS_INDEX => [0.1 * spacing, duration],
             _ => [1e-4 / duration, 1e4 / spacing],
         };
         ends.map(f64::ln)
@@ -81,7 +81,7 @@ pub(super) struct Search<'a> {
     pub unseen: Vec<(MomentKind, f64)>,
 }
 
-/// Maximum of the likelihood that a search found.
+/// Result of a search: maximum of the likelihood with its derivatives.
 pub(super) struct Maximum {
     pub point: Point,
     pub derivatives: ScoreAndInformation,
@@ -148,7 +148,7 @@ impl Search<'_> {
             self.start(inverse_time, vectors, |vector, ranges| {
                 // The effect of a moment shows within a quarter of a record.
                 let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
-                ranges.with(&NoiseVector { moment, ..*vector }, LEVEL, log)
+                ranges.with(&NoiseVector { moment, ..*vector }, LEVEL_INDEX, log)
             })
         };
         LEVELS.map(level).into()
@@ -164,8 +164,8 @@ impl Search<'_> {
                     let time = share * ranges.duration;
                     let factor = if vector.moment == MomentKind::White { 0.5 / time } else { 0.5 * time };
                     let gusts = NoiseVector { moment: MomentKind::OrnsteinUhlenbeck, ..*vector };
-                    let gusts = ranges.with(&gusts, CORRELATION, time.ln());
-                    ranges.with(&gusts, LEVEL, vector.log[LEVEL] + 0.5 * factor.ln())
+                    let gusts = ranges.with(&gusts, CORRELATION_INDEX, time.ln());
+                    ranges.with(&gusts, LEVEL_INDEX, vector.log[LEVEL_INDEX] + 0.5 * factor.ln())
                 })
             }));
         }
@@ -310,5 +310,5 @@ fn reduced(information: &DMatrix<f64>, selected: &[usize]) -> Option<DMatrix<f64
 
 /// Noise vector with the initial gyro error of a search.
 pub(super) fn gyro_start(ranges: &Ranges, vector: &NoiseVector) -> NoiseVector {
-    ranges.with(vector, GYRO, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
+    ranges.with(vector, GYRO_INDEX, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

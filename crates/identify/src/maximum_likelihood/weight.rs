@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::point::{Record, SHARED_PARAMETERS, WhitenedColumns};
 use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::profile::solve2;
 
 /// Maximum number of iterations of the weights of the records of one ship.
@@ -35,7 +35,7 @@ impl Weight {
             products: gram([rudder, constant, measured]),
             readings,
             freedom: readings - fitted,
-            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER].exp()),
+            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
         }
     }
 

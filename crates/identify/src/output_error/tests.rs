@@ -86,7 +86,7 @@ fn no_start_beats_the_scan() {
     }
 }
 
-/// A heading that oscillates by itself, at a frequency other than that of the rudder, gives no K.
+/// A heading that oscillates by itself, at another frequency than the rudder, gives no K.
 #[test]
 fn a_heading_that_does_not_answer_the_rudder_is_refused() {
     let steered = Case { start: Start::Rest, ..Case::default() }.trial();

@@ -61,7 +61,7 @@ impl Residuals {
             scores.push(record_scores);
         }
         let inverse = blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>().try_inverse()?;
-        let omega = robust::newey_west_of_three(&scores) * (count as f64 / degrees_of_freedom);
+        let omega = robust::newey_west_three(&scores) * (count as f64 / degrees_of_freedom);
         Some(Self {
             count,
             rss,

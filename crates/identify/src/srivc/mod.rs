@@ -13,9 +13,9 @@
 //! is a stationary point of the output error and efficient for white noise. Without noise the equation holds for any â.
 //! And a wrong noise model costs efficiency, not consistency, as long as the noise does not affect the rudder.
 //!
-//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is the
+//! The start is â = 0 with the regressors as instruments: there 1/s is an integral, and the equation is the
 //! equation of motion integrated twice, solved by least squares. For a < 0 the filters would grow; such a record is
-//! filtered backwards in time, which turns a into −a and keeps the rest of the equation.
+//! filtered backwards in time, which turns a into −a and keeps all other terms.
 //!
 //! Sources: Young and Jakeman (1980), refined instrumental variables part III; Garnier and Wang (2008), chapter 4;
 //! equivalence to the output error at the fixed point: Pan, González, Welsh and Rojas (2020).

@@ -31,7 +31,7 @@ pub struct FormRecord<'a> {
 }
 
 impl FormRecord<'_> {
-    /// Loading of the ship; a record with a correction was at partial load, whatever it declares.
+    /// Loading of the ship; a corrected record was at partial load, even if it declares full load.
     pub(crate) fn loading(&self) -> Option<Loading> {
         self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
     }
@@ -41,7 +41,7 @@ impl FormRecord<'_> {
 pub(crate) struct TestedManoeuvre<'a> {
     pub record: FormRecord<'a>,
     /// Manoeuvre and side; `None` if it is not a manoeuvre of the form.
-    pub what: Option<(FormManoeuvre, &'static str)>,
+    pub manoeuvre: Option<(FormManoeuvre, &'static str)>,
     /// Characteristics that the record shows.
     pub figures: Vec<(&'static str, Quantity)>,
     /// Reason why the record is not a manoeuvre of the form, or a remark.
@@ -55,21 +55,21 @@ impl<'a> TestedManoeuvre<'a> {
     /// Record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from a
     /// straight course: the rudder amidships, and, if the approach is recorded, a yaw rate below a twentieth of the
     /// maximum or below three times its error.
-    pub fn of(record: &FormRecord<'a>) -> Self {
+    pub fn from_record(record: &FormRecord<'a>) -> Self {
         let classified = match Measured::from_trial(record.trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record.trial, &zigzag),
             _ => circle(record.trial),
         };
         let record = *record;
         match classified {
-            Ok((what, figures, remark)) => Self { record, what: Some(what), figures, remark },
-            Err(remark) => Self { record, what: None, figures: Vec::new(), remark: Some(remark) },
+            Ok((manoeuvre, figures, remark)) => Self { record, manoeuvre: Some(manoeuvre), figures, remark },
+            Err(remark) => Self { record, manoeuvre: None, figures: Vec::new(), remark: Some(remark) },
         }
     }
 
     /// `true` if the record is of this manoeuvre to this side.
-    pub fn is(&self, manoeuvre: FormManoeuvre, side: &str) -> bool {
-        self.what.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
+    pub fn matches(&self, manoeuvre: FormManoeuvre, side: &str) -> bool {
+        self.manoeuvre.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
     }
 
     /// Characteristic of the record, by name.

@@ -8,7 +8,7 @@ use trial::{Conditions, Loading, imo};
 
 use super::record::TestedManoeuvre;
 use crate::imo::{TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
-use crate::replay::file_of;
+use crate::replay::record_file;
 
 /// Remarks, in order of relevance.
 pub(crate) fn remarks(
@@ -21,7 +21,7 @@ pub(crate) fn remarks(
     let mut files: IndexMap<String, Vec<&str>> = IndexMap::new();
     for manoeuvre in tested {
         for text in of_record(manoeuvre) {
-            files.entry(text).or_default().push(file_of(manoeuvre.record.trial));
+            files.entry(text).or_default().push(record_file(manoeuvre.record.trial));
         }
     }
     if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
@@ -29,7 +29,7 @@ pub(crate) fn remarks(
     }
     remarks.extend(files.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
     remarks.extend(sides(tested));
-    if tested.iter().any(|tested| tested.what.is_some()) {
+    if tested.iter().any(|tested| tested.manoeuvre.is_some()) {
         remarks.push(String::from(
             "not checked: the test speed (at least 90 % of that at 85 % of the engine output) and the engine",
         ));
@@ -37,7 +37,7 @@ pub(crate) fn remarks(
     remarks.extend(tested.iter().filter_map(of_current));
     for manoeuvre in [ZIG_ZAG_10_10, ZIG_ZAG_20_20, TURNING_CIRCLE_35] {
         for side in ["port", "starboard"] {
-            if tested.iter().filter(|tested| tested.is(manoeuvre, side)).count() > 1 {
+            if tested.iter().filter(|tested| tested.matches(manoeuvre, side)).count() > 1 {
                 remarks.push(format!(
                     "{manoeuvre} to {side}: several records; the first that is at full load or corrected is used"
                 ));
@@ -52,7 +52,8 @@ fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
     let names =
         [(ZIG_ZAG_10_10, "10/10 zig-zag"), (ZIG_ZAG_20_20, "20/20 zig-zag"), (TURNING_CIRCLE_35, "turning circle")];
     let missing = |(manoeuvre, name): (&'static str, &str)| {
-        let done = ["port", "starboard"].map(|side| tested.iter().any(|test| test.is(manoeuvre, side)).then_some(side));
+        let done =
+            ["port", "starboard"].map(|side| tested.iter().any(|test| test.matches(manoeuvre, side)).then_some(side));
         match done {
             [Some(_), Some(_)] => None,
             [None, None] => Some(format!("{name}: not tested")),
@@ -66,13 +67,13 @@ fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
 
 /// Remark on a current in the track of a record.
 fn of_current(tested: &TestedManoeuvre) -> Option<String> {
-    let file = file_of(tested.record.trial);
+    let file = record_file(tested.record.trial);
     match tested.record.current {
         Some(current) => Some(format!(
             "{file}: a current of {:.2} m/s that sets to {:.0}° was removed from the track",
             current.speed_m_s, current.set_deg
         )),
-        None => tested.what.filter(|(manoeuvre, _)| *manoeuvre == TURNING_CIRCLE_35).map(|_| {
+        None => tested.manoeuvre.filter(|(manoeuvre, _)| *manoeuvre == TURNING_CIRCLE_35).map(|_| {
             format!(
                 "{file}: the turn is shorter than the 720° that reveal a current, so its effect on the track is unknown"
             )
@@ -85,7 +86,7 @@ fn of_record(tested: &TestedManoeuvre) -> Vec<String> {
     let record = &tested.record;
     let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
     // A record without entries need not meet the standard.
-    if tested.what.is_some() {
+    if tested.manoeuvre.is_some() {
         remarks.extend(record.trial.shortcomings().iter().map(ToString::to_string));
         if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
             remarks.push(String::from(

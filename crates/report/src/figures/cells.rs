@@ -132,7 +132,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
         (Outline::Alias, DOTTED, "mostly indistinguishable from it"),
         (Outline::Finding, SOLID, "in the title"),
     ];
-    let shown = outlines.iter().filter(|(own, ..)| data.all().any(|cell| cell.outline == Some(*own)));
+    let shown = outlines.iter().filter(|(outline, ..)| data.all().any(|cell| cell.outline == Some(*outline)));
     sheet.legend(
         &shown.map(|(_, dash, name)| LegendEntry::new(LegendSymbol::Outline(dash), *name)).collect::<Vec<_>>(),
     )?;
@@ -142,7 +142,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
     let height = data.rows.len().max(1) as f64 * data.pitch(theme);
     let heads =
         data.panels.iter().map(|(head, _)| Some(LegendEntry::new(LegendSymbol::Nothing, head.as_ref()?))).collect();
-    let shading = Shading::of(data);
+    let shading = Shading::from_map(data);
     let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row, height) };
     for (chart, (_, rows)) in sheet.grid(grid)?.iter().zip(&data.panels) {
         let places = rows.iter().enumerate().flat_map(|(y, row)| (0..row.len()).map(move |x| (x, y)));
@@ -206,7 +206,7 @@ struct Shading {
 }
 
 impl Shading {
-    fn of(data: &CellMap) -> Self {
+    fn from_map(data: &CellMap) -> Self {
         let is_log = matches!(data.shades, Shades::Range(TickRule::Logarithmic, _));
         let is_shares = data.is_shares();
         let along = |value: f64| if is_log { value.log10() } else { value };

@@ -6,10 +6,10 @@ use plotters::style::{Color as _, RGBColor};
 
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
-use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD, draw_record, spread_overlapping, zero_stroke};
+use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
 use super::side_labels;
 use crate::axis::{Axis, TickRule};
-use crate::backend::{PlotResult, SvgGroup, UNITS, units};
+use crate::backend::{PlotResult, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::chart::Chart;
 use crate::curve::PlotCurve;
@@ -176,7 +176,7 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
     stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
-/// Extents of some layers along one axis; if the axis is cut for wild data, every value is a separate extent.
+/// Extents of layers along one axis; if the axis is cut for wild data, every value is a separate extent.
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
@@ -214,7 +214,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
         data.fixed.extend(stack.marks.iter().map(|mark| mark.value));
-        let (axis, cut) = ruler.axis(&data, if has_marks { PAD } else { ACROSS_PAD });
+        let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD });
         is_cut |= cut;
         AxisSide::new(axis, ruler.title.as_str())
     };
@@ -223,7 +223,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
         data.fixed
             .extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
-        let (axis, cut) = row.y.axis(&data, PAD);
+        let (axis, cut) = row.y.axis(&data, PAD_SHARE);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
         // If the font is large relative to the panel, the data keep a part of it.
@@ -284,12 +284,12 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
         background(chart, theme, stack, &stack.rows[if stack.columns.is_some() { 0 } else { index / count }])?;
         // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
-        let (bands, others): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
-        for layer in bands.into_iter().chain(others) {
+        let (bands, layers): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
+        for layer in bands.into_iter().chain(layers) {
             dots += draw_layer(chart, layer, theme, outside)?;
         }
         chart.frame(theme)?;
-        panel.layers.iter().try_for_each(|layer| draw_words(chart, layer, theme))?;
+        panel.layers.iter().try_for_each(|layer| draw_labels(chart, layer, theme))?;
         if stack.columns.is_some() {
             corner(chart, theme, panel)?;
         }
@@ -349,19 +349,19 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.draw_elements(ship))?;
             }
         }
-        LayerKind::Words(..) => {}
+        LayerKind::Labels(..) => {}
     }
     Ok(0)
 }
 
-/// Writes the words of a layer next to its points, on the other side if they would leave the panel.
-fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Words(colour, corner, words) = &layer.kind else { return Ok(()) };
+/// Writes the labels of a layer next to its points, on the other side if they would leave the panel.
+fn draw_labels(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
+    let LayerKind::Labels(colour, corner, labels) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
-    for ((x, y), words) in layer.curve.pairs().zip(words) {
+    for ((x, y), label) in layer.curve.pairs().zip(labels) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, HPos::Left) };
+        let text = TextLine { colour: *colour, ..TextLine::new(label, theme.small_font, HPos::Left) };
         let left = x - right - text.width();
         let fits_right = x + right + text.width() < chart.rect.right();
         let is_right = left < chart.rect.x || corner.is_right && fits_right;
@@ -446,5 +446,5 @@ fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme
     let [low, high] = [place(ends[0].min(ends[1]), bottom + far), place(ends[0].max(ends[1]), top - far)];
     let cap = units(theme.marker).max(2) as u32;
     chart.canvas.area.draw(&ErrorBar::new_vertical(units(x), low, low, high, stroke.style(), cap))?;
-    Ok(f64::from(low - high) / UNITS)
+    Ok(f64::from(low - high) / UNITS_PER_POINT)
 }

@@ -13,7 +13,7 @@ mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
 pub use panels::{
-    AxisLine, AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, TickRule, WordsPlace,
+    AxisLine, AxisSpec, LabelPlacement, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, TickRule,
 };
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};

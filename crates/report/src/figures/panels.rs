@@ -134,9 +134,9 @@ pub struct Marks {
     pub side_by_side: bool,
 }
 
-/// Place of the words of a point.
+/// Corner of a point at which its label stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WordsPlace {
+pub struct LabelPlacement {
     /// `true` above the point.
     pub is_above: bool,
     /// `true` to the right of the point.
@@ -160,8 +160,8 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Words next to the points, all in one corner of their points.
-    Words(RGBColor, WordsPlace, Vec<String>),
+    /// Labels next to the points, all at the same corner.
+    Labels(RGBColor, LabelPlacement, Vec<String>),
 }
 
 /// One layer of a panel.
@@ -237,7 +237,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour,
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
@@ -257,7 +257,7 @@ impl Layer {
                 LegendSymbol::LineAndMarker(pen.stroke(theme), *look)
             }
             LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
-            LayerKind::Words(..) => return None,
+            LayerKind::Labels(..) => return None,
             LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })
@@ -363,7 +363,7 @@ pub struct Panels {
     pub note: Option<String>,
     /// Remark if a layer is cut.
     pub cut: Option<String>,
-    /// Meaning of marks beyond the axes; `None` if it needs no words.
+    /// Meaning of marks beyond the axes; `None` without a remark.
     pub overflow_note: Option<String>,
 }
 

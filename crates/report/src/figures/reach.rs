@@ -100,13 +100,13 @@ impl Extents {
     }
 }
 
-/// Maximum share of the points on either side that count as far from all others.
+/// Maximum share of the points on either side that count as outliers.
 const FAR: f64 = 0.005;
 
-/// Maximum distance of these points from the others on the axis, in ranges of the others.
+/// Maximum distance of outliers from the other points on the axis, in ranges of those.
 const ROOM: f64 = 0.5;
 
-/// Values that set the axis: minimum and maximum, after a few outliers are moved towards the rest.
+/// Values that set the axis: minimum and maximum, after a few outliers are moved towards the other values.
 pub(super) fn robust_range(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let skipped = (FAR * values.len() as f64).ceil() as usize;

@@ -114,6 +114,6 @@ pub struct NamedRows {
     pub shaded: Option<(String, Vec<usize>)>,
     /// Remark under the figure.
     pub note: Option<String>,
-    /// Meaning of marks beyond the axes; `None` if it needs no words.
+    /// Meaning of marks beyond the axes; `None` without a remark.
     pub overflow_note: Option<String>,
 }

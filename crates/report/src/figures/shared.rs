@@ -13,7 +13,7 @@ use crate::palette::{INK, RECORD};
 use crate::theme::Theme;
 
 /// Free space above and below the data, as a share of its range.
-pub(super) const PAD: f64 = 0.08;
+pub(super) const PAD_SHARE: f64 = 0.08;
 
 /// Free space left and right of lines.
 pub(super) const ACROSS_PAD: f64 = 0.02;
@@ -24,7 +24,7 @@ const DENSE: usize = 400;
 /// Maximum number of dots of full size; more are smaller, so that they stay separate.
 const MANY: usize = 150;
 
-/// Remark on marks beyond an axis whose meaning needs no words.
+/// Default remark on marks beyond an axis.
 pub(super) const BEYOND_AXIS_REMARK: &str = "Arrows: beyond the axis.";
 
 /// Bars of the marks of a figure: always 95 % intervals.
@@ -79,8 +79,7 @@ pub(super) fn record_symbol(theme: &Theme, heading: &PlotCurve) -> LegendSymbol 
 /// Positions of marks, where those nearer than `gap` are spread about their mean: zig-zags of one rudder angle would
 /// otherwise overlap.
 pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
-    let mut order: Vec<(usize, f64)> =
-        places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
+    let mut order: Vec<(usize, f64)> = places.iter().enumerate().filter_map(|(k, at)| Some((k, (*at)?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
     let mut moved = places.to_vec();
     for group in order.chunk_by(|a, b| b.1 - a.1 < gap) {

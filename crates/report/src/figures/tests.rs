@@ -2,7 +2,7 @@
 //! strokes are visible, cuts are noted.
 
 use super::*;
-use crate::backend::UNITS;
+use crate::backend::UNITS_PER_POINT;
 use crate::curve::PlotCurve;
 use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
 use crate::{Drawing, Theme};
@@ -193,7 +193,7 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Drawing)> {
 
 /// Every number of an attribute in the document.
 fn numbers<'a>(svg: &'a str, attribute: &str) -> Vec<&'a str> {
-    svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+    svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|tail| tail.split('"').next()).collect()
 }
 
 /// The document without the parts clipped at a frame.
@@ -227,16 +227,16 @@ fn check(name: &str, figure: &Drawing) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();
-    let (right, bottom) = ((width * UNITS) as i64 + 1, (height * UNITS) as i64 + 1);
+    let (right, bottom) = ((width * UNITS_PER_POINT) as i64 + 1, (height * UNITS_PER_POINT) as i64 + 1);
     for (x, y) in places(&uncut(svg)) {
         assert!((0..=right).contains(&x) && (0..=bottom).contains(&y), "{name}: {x},{y} is off the page");
     }
     // Minimum stroke width: 0.3 points.
     for stroke in numbers(svg, "stroke-width") {
-        assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS, "{name}: stroke {stroke}");
+        assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS_PER_POINT, "{name}: stroke {stroke}");
     }
     for size in numbers(svg, "font-size") {
-        assert!(size.parse::<f64>().unwrap() >= 6.5 * UNITS, "{name}: font size {size}");
+        assert!(size.parse::<f64>().unwrap() >= 6.5 * UNITS_PER_POINT, "{name}: font size {size}");
     }
     assert!(resvg::usvg::Tree::from_str(svg, &resvg::usvg::Options::default()).is_ok(), "{name}: invalid SVG");
 }
@@ -337,8 +337,7 @@ fn large_type_leaves_a_heading_upright() {
     let style = crate::Style { font_size_pt: Some(16.0), ..Default::default() };
     let theme = style.apply_to(Theme::paper(60.0, 300.0).unwrap()).unwrap();
     let figure = Plot::from(zigzag(40, 0.3)).draw("", &theme);
-    let ends: Vec<f64> =
-        numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|end| end.parse().unwrap()).collect();
+    let ends: Vec<f64> = numbers(figure.svg(), "data-y")[0].split('|').skip(1).map(|x| x.parse().unwrap()).collect();
     assert!(ends[0] < -20.0 && ends[1] > 20.0 && ends[1] - ends[0] < 400.0, "{ends:?}");
 }
 

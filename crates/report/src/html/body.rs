@@ -69,13 +69,13 @@ pub(super) fn from_markdown(markdown: &str, folded: &[&str], images: &dyn Fn(&st
 }
 
 /// Text from a place to the end of the element that begins there, and the place after it.
-fn words(events: &[Event], start: usize) -> (String, usize) {
+fn plain_text(events: &[Event], start: usize) -> (String, usize) {
     let (mut depth, mut text) = (0_usize, String::new());
     for (place, event) in events.iter().enumerate().skip(start) {
         match event {
             Event::Start(_) => depth += 1,
             Event::End(_) => depth -= 1,
-            Event::Text(words) | Event::Code(words) | Event::InlineHtml(words) => text += words,
+            Event::Text(part) | Event::Code(part) | Event::InlineHtml(part) => text += part,
             Event::SoftBreak | Event::HardBreak => text.push(' '),
             _ => {}
         }
@@ -90,7 +90,7 @@ fn words(events: &[Event], start: usize) -> (String, usize) {
 fn emphasis(events: &[Event], place: usize) -> Option<(String, usize)> {
     let is_begun = matches!(events.get(place)?, Event::Start(Tag::Paragraph))
         && matches!(events.get(place + 1)?, Event::Start(Tag::Emphasis));
-    let (text, behind) = is_begun.then(|| words(events, place + 1))?;
+    let (text, behind) = is_begun.then(|| plain_text(events, place + 1))?;
     matches!(events.get(behind)?, Event::End(TagEnd::Paragraph)).then_some((text, behind + 1))
 }
 
@@ -103,7 +103,7 @@ impl<'m> BodyReader<'_, 'm> {
                 continue;
             }
             match &events[place] {
-                Event::Start(Tag::Heading { level, .. }) => self.heading(*level, words(&events, place).0),
+                Event::Start(Tag::Heading { level, .. }) => self.heading(*level, plain_text(&events, place).0),
                 // Words over several rows are written once: no cell below them is a head.
                 Event::Start(Tag::TableCell) => {
                     self.begin_cell(matches!(events.get(place + 1), Some(Event::End(TagEnd::TableCell))));
@@ -134,7 +134,7 @@ impl<'m> BodyReader<'_, 'm> {
             return None;
         };
         let stem = dest_url.strip_suffix(".png").filter(|stem| !stem.contains(['/', '\\', ':']))?;
-        let (name, behind) = words(events, place + 1);
+        let (name, behind) = plain_text(events, place + 1);
         if !matches!(events.get(behind)?, Event::End(TagEnd::Paragraph)) {
             return None;
         }

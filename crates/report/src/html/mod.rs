@@ -1,5 +1,5 @@
 //! Report for a browser: the page that is written as Markdown, in one file that needs no other. Figures and tables are
-//! embedded; no file is loaded. The Markdown is the only source: the page adds no statement of its own.
+//! embedded; no file is loaded. The Markdown is the only source: the page adds no statement.
 
 mod body;
 mod escape;

@@ -46,7 +46,7 @@ fn words_of_others_are_shown_and_not_obeyed() {
 #[test]
 fn every_name_is_given_once() {
     let page = made(PAGE);
-    let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|tail| tail.split('"').next()).collect();
     assert_eq!(ids.iter().collect::<HashSet<_>>().len(), ids.len(), "{ids:?}");
     assert!(ids.contains(&"first---last") && ids.contains(&"first---last-2"));
 }
@@ -79,7 +79,7 @@ fn a_page_can_be_mailed() {
 #[test]
 fn a_part_that_is_folded_ends_with_the_next_part() {
     let page = made("# A study\n\n## First\n\nOne.\n\n## Last\n\nTwo.\n\n### Below\n\nThree.\n\n## Behind\n\nFour.\n");
-    let part = page.split("<details>\n<summary>").last().and_then(|rest| rest.split("</details>").next());
+    let part = page.split("<details>\n<summary>").last().and_then(|tail| tail.split("</details>").next());
     let part = part.expect("a folded part");
     assert!(part.starts_with("<h2 id=\"last\">Last</h2></summary>") && part.contains("Three."), "{page}");
     assert!(!part.contains("One.") && !part.contains("Four."), "{page}");

@@ -51,7 +51,7 @@ impl Table {
     }
 
     /// Cells of a column from top to bottom.
-    pub(super) fn cells_of(&self, column: usize) -> impl Iterator<Item = Option<&str>> {
+    pub(super) fn column_cells(&self, column: usize) -> impl Iterator<Item = Option<&str>> {
         self.rows.iter().map(move |row| row.get(column).and_then(Option::as_deref))
     }
 
@@ -61,7 +61,7 @@ impl Table {
         let mut lines = vec![Vec::new(); self.rows.len() + 1];
         for (i, column) in self.columns.iter().enumerate() {
             let cells: Vec<Cow<str>> =
-                self.cells_of(i).map(|cell| escaped(cell.unwrap_or(crate::number::MISSING))).collect();
+                self.column_cells(i).map(|cell| escaped(cell.unwrap_or(crate::number::MISSING))).collect();
             let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
             for (line, cell) in lines.iter_mut().zip(align(&escaped(&column.head()), &cells, column.alignment)) {
                 line.push(cell);

@@ -47,7 +47,7 @@ impl TableHead {
         self
     }
 
-    /// Adds columns of words.
+    /// Adds columns of texts.
     #[must_use]
     pub fn texts<H: Into<String>>(self, headings: impl IntoIterator<Item = H>) -> Self {
         self.with(headings, Alignment::Left)

@@ -4,7 +4,7 @@
 
 use super::content::Table;
 use super::head::TableColumn;
-use super::latex_text::{escape, script, worded};
+use super::latex_text::{escape, heading_text, script};
 use super::width::{Alignment, columns as characters};
 
 /// Maximum number of rows on one page; longer tables run over pages.
@@ -24,7 +24,7 @@ impl Table {
         if self.columns.is_empty() {
             return String::from("% A table without columns.\n");
         }
-        let is_empty = |place: &usize| !self.rows.is_empty() && self.cells_of(*place).all(|cell| cell.is_none());
+        let is_empty = |place: &usize| !self.rows.is_empty() && self.column_cells(*place).all(|cell| cell.is_none());
         let shown = (0..self.columns.len()).filter(|place| !is_empty(place));
         let set: Vec<LatexColumn> = shown.map(|place| LatexColumn::new(self, place, &self.columns[place])).collect();
         let formats: Vec<&str> = set.iter().map(|column| column.format.as_str()).collect();
@@ -60,8 +60,8 @@ impl LatexColumn {
     fn new(table: &Table, place: usize, column: &TableColumn) -> Self {
         let cells: Vec<Option<&str>> = table.rows.iter().map(|row| row.get(place).and_then(Option::as_deref)).collect();
         let numbers: Vec<Option<LatexNumber>> = cells.iter().map(|cell| cell.and_then(LatexNumber::parse)).collect();
-        let (known, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
-        let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= known;
+        let (filled, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
+        let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= filled;
         let widest = cells.iter().flatten().map(|cell| characters(cell)).max().unwrap_or(0);
         let format = match (is_number, column.alignment) {
             (true, _) => format!("S[table-format={}]", table_format(numbers.iter().flatten())),
@@ -71,7 +71,7 @@ impl LatexColumn {
         };
         let heading = wrapped(&column.head(), widest.max(HEADING));
         Self {
-            heading: heading.iter().map(|line| format!("{{{}}}", worded(line))).collect(),
+            heading: heading.iter().map(|line| format!("{{{}}}", heading_text(line))).collect(),
             cells: cells
                 .iter()
                 .zip(&numbers)
@@ -86,7 +86,7 @@ impl LatexColumn {
     }
 }
 
-/// Heading in lines no longer than the cells below, as far as its words allow.
+/// Heading in lines no longer than the cells below, broken at blanks only.
 fn wrapped(heading: &str, body: usize) -> Vec<String> {
     let longest = heading.split(' ').map(characters).max().unwrap_or(0).max(body);
     let mut lines: Vec<String> = Vec::new();
@@ -174,8 +174,7 @@ fn head(set: &[LatexColumn]) -> String {
     let mut out = String::from("    \\toprule\n");
     for line in 0..lines {
         let heading_line = |column: &LatexColumn| (line + column.heading.len()).checked_sub(lines);
-        let cell =
-            |column: &LatexColumn| heading_line(column).map_or_else(String::new, |line| column.heading[line].clone());
+        let cell = |column: &LatexColumn| heading_line(column).map_or_else(String::new, |k| column.heading[k].clone());
         out += &format!("    {} \\\\\n", set.iter().map(cell).collect::<Vec<_>>().join(" & "));
     }
     out + "    \\midrule\n"
@@ -194,7 +193,7 @@ fn body(set: &[LatexColumn], rows: usize) -> String {
 
 fn caption(table: &Table, end: &str) -> String {
     let mut out =
-        table.title.as_ref().map_or_else(String::new, |title| format!("  \\caption{{{}}}{end}\n", worded(title)));
+        table.title.as_ref().map_or_else(String::new, |title| format!("  \\caption{{{}}}{end}\n", heading_text(title)));
     if let (Some(label), Some(_)) = (&table.label, &table.title) {
         out.insert_str(out.len() - 1 - end.len(), &format!("\\label{{tab:{label}}}"));
     }

@@ -31,10 +31,10 @@ pub(super) fn escape(text: &str) -> String {
                 chars.next();
             }
             out.push_str(&format!("${kind}{{{run}}}$"));
-        } else if let Some(accent) = chars.peek().and_then(|next| found("accent", *next)) {
+        } else if let Some(accent) = chars.peek().and_then(|next| table_entry("accent", *next)) {
             chars.next();
             let letter = c.is_ascii_alphanumeric().then(|| c.to_string());
-            match letter.or_else(|| found("math", c).map(str::to_owned)) {
+            match letter.or_else(|| table_entry("math", c).map(str::to_owned)) {
                 Some(letter) => out.push_str(&format!("$\\{accent}{{{letter}}}$")),
                 // An accent on a character that is not a letter is written alone.
                 None => out.push_str(&alone(c)),
@@ -47,7 +47,7 @@ pub(super) fn escape(text: &str) -> String {
 }
 
 /// Heading or caption: as [`escape`], with symbols that are separate words set as symbols.
-pub(super) fn worded(text: &str) -> String {
+pub(super) fn heading_text(text: &str) -> String {
     let word = |word: &str| match SYMBOLS.contains(&word) {
         true => format!("${word}$"),
         false => escape(word),
@@ -62,7 +62,7 @@ pub(super) fn script(c: char) -> Option<(char, char)> {
 }
 
 fn alone(c: char) -> String {
-    match (found("text", c), found("math", c)) {
+    match (table_entry("text", c), table_entry("math", c)) {
         (Some(plain), _) => plain.to_owned(),
         (_, Some(sign)) => format!("${sign}$"),
         _ if c.is_ascii() || LETTERS.contains(c) => c.to_string(),
@@ -70,7 +70,7 @@ fn alone(c: char) -> String {
     }
 }
 
-fn found(kind: &str, c: char) -> Option<&'static str> {
+fn table_entry(kind: &str, c: char) -> Option<&'static str> {
     let code = format!("{kind}\tU+{:04X}\t", u32::from(c));
     SIGNS.lines().find_map(|line| line.strip_prefix(code.as_str()))
 }
@@ -83,7 +83,7 @@ mod tests {
     fn what_the_program_writes_is_mathematics() {
         assert_eq!(escape("σ² 10⁻³ \\ x_1"), "$\\sigma$$^{2}$ 10$^{-3}$ \\textbackslash{} x\\_1");
         assert_eq!(escape("r₁₂ √T′ ψ̇ K̂"), "r$_{12}$ $\\surd$T$'$ $\\dot{\\psi}$ $\\hat{K}$");
-        assert_eq!(worded("K/T median of Kempf"), "$K/T$ median of Kempf");
+        assert_eq!(heading_text("K/T median of Kempf"), "$K/T$ median of Kempf");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
 use super::effect::{
-    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use crate::angle::DEGREE;
 use estimation::number::Real;
@@ -38,8 +38,8 @@ impl Effect for Backlash {
         Some(CandidateEffect::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::RUDDER
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::RUDDER
     }
 
     fn states(&self) -> usize {
@@ -47,7 +47,7 @@ impl Effect for Backlash {
     }
 }
 
-impl<R: Real> Action<R> for Backlash {
+impl<R: Real> EffectEquations<R> for Backlash {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use estimation::number::Real;
 
-use super::file_number::{FileNumber, FileRole};
+use super::scenario_number::{NumberConversion, ScenarioNumber};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
@@ -30,7 +30,7 @@ pub struct Parameter {
     /// `true` if the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
     /// Key in a scenario file; `None` for a parameter that no scenario has.
-    pub file: Option<FileNumber>,
+    pub file: Option<ScenarioNumber>,
 }
 
 impl Parameter {
@@ -54,19 +54,19 @@ impl Parameter {
 
     /// Required parameter in a scenario file, with its key and the size of its unit in SI.
     pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
-        Self { file: Some(FileNumber { key, unit, meaning, role: FileRole::Value, default: None }), ..self }
+        Self { file: Some(ScenarioNumber { key, unit, meaning, role: NumberConversion::Value, default: None }), ..self }
     }
 
     /// Parameter with another role in the scenario file.
-    pub(super) const fn in_role(self, role: FileRole) -> Self {
+    pub(super) const fn in_role(self, role: NumberConversion) -> Self {
         let Some(number) = self.file else { return self };
-        Self { file: Some(FileNumber { role, ..number }), ..self }
+        Self { file: Some(ScenarioNumber { role, ..number }), ..self }
     }
 
     /// Parameter with a default in the scenario file.
     pub(super) const fn by_default(self, default: f64) -> Self {
         let Some(number) = self.file else { return self };
-        Self { file: Some(FileNumber { default: Some(default), ..number }), ..self }
+        Self { file: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
     }
 
     /// `true` if its dimension is unknown.
@@ -129,9 +129,9 @@ pub struct SwayCoupling<R = f64> {
     pub rudder_time: R,
 }
 
-/// Quantities on which an effect acts in addition to its own states; other quantities are not evaluated.
+/// Targets of an effect in addition to its states; the equations of other targets are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ActsOn {
+pub struct EffectTarget {
     /// `true` if the effect transforms the acting rudder.
     pub rudder: bool,
     /// `true` if the effect scales damping and gain.
@@ -140,7 +140,7 @@ pub struct ActsOn {
     pub moment: bool,
 }
 
-impl ActsOn {
+impl EffectTarget {
     /// No quantity.
     pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
     /// Acting rudder.
@@ -164,10 +164,10 @@ pub struct Description {
     pub parameters: &'static [Parameter],
 }
 
-/// Effect that a first-order response lacks. Its equations are in [`Action`].
+/// Effect that a first-order response lacks. Its equations are in [`EffectEquations`].
 ///
 /// `p` has the values of the parameters.
-pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
+pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
 
@@ -192,7 +192,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Keys of the parameters in a scenario file; `None` for a form that needs a measured record.
-    fn in_file(&self) -> Option<Vec<FileNumber>> {
+    fn in_file(&self) -> Option<Vec<ScenarioNumber>> {
         self.parameters().iter().map(|parameter| parameter.file).collect()
     }
 
@@ -211,7 +211,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect>;
 
     /// Quantities on which the effect acts.
-    fn acts_on(&self) -> ActsOn;
+    fn acts_on(&self) -> EffectTarget;
 
     /// Number of states of the effect.
     fn states(&self) -> usize {
@@ -276,7 +276,7 @@ pub trait Effect: Action<f64> + Action<Tangent> + fmt::Debug + Send + Sync {
 /// Equations of an effect, for every number type.
 ///
 /// `p` has the values of the parameters, `z` the states.
-pub trait Action<R: Real> {
+pub trait EffectEquations<R: Real> {
     /// States on a straight approach.
     fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(0.0));
@@ -317,19 +317,19 @@ pub trait Action<R: Real> {
 /// Number type in which the equations of effects can be evaluated.
 pub trait EffectReal: Real {
     /// Equations of an effect in this number type.
-    fn action(effect: &dyn Effect) -> &dyn Action<Self>;
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self>;
 }
 
 impl EffectReal for f64 {
     #[inline]
-    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self> {
         effect
     }
 }
 
 impl EffectReal for Tangent {
     #[inline]
-    fn action(effect: &dyn Effect) -> &dyn Action<Self> {
+    fn effect_equations(effect: &dyn Effect) -> &dyn EffectEquations<Self> {
         effect
     }
 }
@@ -370,7 +370,7 @@ pub struct Prior {
     pub highest: f64,
     /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
-    /// Index of a reference parameter of the effect: value and prior are those of the difference from this parameter.
+    /// Index of a reference parameter of the effect: value and prior refer to the difference from it.
     pub reference: Option<usize>,
 }
 

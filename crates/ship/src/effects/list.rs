@@ -4,10 +4,10 @@
 use std::sync::{Arc, LazyLock};
 
 use super::backlash::Backlash;
-use super::effect::{ActsOn, Description, Effect, Parameter};
-use super::file_number::FileRole::{Direction, OverT};
-use super::file_number::{PER_DEGREE, PER_DEGREE_SQUARED};
+use super::effect::{Description, Effect, EffectTarget, Parameter};
 use super::formula::{Formula, ListedFormula, ListedPrior};
+use super::scenario_number::NumberConversion::{Direction, OverT};
+use super::scenario_number::{PER_DEGREE, PER_DEGREE_SQUARED};
 use super::second_order::SecondOrder;
 use super::speed_loss::SpeedLoss;
 use super::steering_lag::SteeringLag;
@@ -28,17 +28,17 @@ pub(super) enum ListedEffect {
 /// which the formula names them, with their keys in scenario files; prior (mean, standard deviation and maximum) in
 /// given records.
 ///
-/// With [`ActsOn::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; with [`ActsOn::MOMENT`] a yaw
-/// acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
+/// With [`EffectTarget::RUDDER`] the formula is the acting rudder, from `delta` alone, rad; with
+/// [`EffectTarget::MOMENT`] a yaw acceleration, rad/s²: `K_over_T` times a moment as equivalent rudder angle.
 const fn row(
     [id, form, equation]: [&'static str; 3],
-    acts_on: ActsOn,
+    acts_on: EffectTarget,
     formula: &'static str,
     parameters: &'static [Parameter],
     prior: ListedPrior,
 ) -> ListedEffect {
     let description = Description { id, form, equation, parameters };
-    Row(ListedFormula { description, acts_on, formula, prior, of_weather: false })
+    Row(ListedFormula { description, acts_on, formula, prior, is_weather: false })
 }
 
 /// Row of a moment of the weather.
@@ -49,7 +49,7 @@ const fn weather(
     prior: ListedPrior,
 ) -> ListedEffect {
     let description = Description { id, form, equation, parameters };
-    Row(ListedFormula { description, acts_on: ActsOn::MOMENT, formula, prior, of_weather: true })
+    Row(ListedFormula { description, acts_on: EffectTarget::MOMENT, formula, prior, is_weather: true })
 }
 
 /// Maximum of a prior that is limited by the range of its parameter alone.
@@ -64,17 +64,17 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // Divided by T a coefficient stays regular when 1/T passes through zero. Without dimension: r³ within 8, r|r|
     // within 1.2, r² (damping that differs by side) within 0.4.
     row(["nonlinear_damping", "r³", "T r' + r + n₃ r³ = K (δ + δ_r)"],
-        ActsOn::MOMENT, "-n3_over_T * r * r * r",
+        EffectTarget::MOMENT, "-n3_over_T * r * r * r",
         &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])
             .in_file("n3-s2-per-deg2", PER_DEGREE_SQUARED, "+ n3 r³ on the left (Norrbin, Bech).").in_role(OverT)],
         |records| Some([0.0, 8.0 * records.time, UNBOUNDED])),
     row(["nonlinear_damping", "r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)"],
-        ActsOn::MOMENT, "-n2_over_T * r * abs(r)",
+        EffectTarget::MOMENT, "-n2_over_T * r * abs(r)",
         &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])
             .in_file("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.").in_role(OverT)],
         |_| Some([0.0, 1.2, UNBOUNDED])),
     row(["nonlinear_damping", "r²", "T r' + r + n₁₁ r² = K (δ + δ_r)"],
-        ActsOn::MOMENT, "-n11_over_T * r * r",
+        EffectTarget::MOMENT, "-n11_over_T * r * r",
         &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])
             .in_file("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").in_role(OverT)],
         |_| Some([0.0, 0.4, UNBOUNDED])),
@@ -101,26 +101,26 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // blade, is δ − ⅔ δ³; the yaw rate of the hull reduces that angle. Within the rudder angles of the records the
     // effect grows with the angle: c₃ < 1/(3 δ²).
     row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
-        ActsOn::RUDDER, "delta - c3 * delta * delta * delta",
+        EffectTarget::RUDDER, "delta - c3 * delta * delta * delta",
         &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])
             .in_file("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
         |records| Some([0.0, 0.4, (records.rudder * records.rudder * 3.0).recip()])),
     Rust(|| Arc::new(Backlash)),
     // Angles below g have no effect; larger angles act with g subtracted.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
-        ActsOn::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
+        EffectTarget::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
         &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Width of a dead band.")],
         |records| Some(Backlash::prior(records))),
     // The gain is 1 + a to starboard and 1 − a to port.
     row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
-        ActsOn::RUDDER, "delta + a * abs(delta)",
+        EffectTarget::RUDDER, "delta + a * abs(delta)",
         &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])
             .in_file("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
         |_| Some([0.0, 0.12, UNBOUNDED])),
     // Moment that is even in the yaw rate, and so in the drift that accompanies it. A rudder whose inflow is
     // straightened differently on either side causes it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
-        ActsOn::MOMENT, "K_over_T * c_r * abs(r)",
+        EffectTarget::MOMENT, "K_over_T * c_r * abs(r)",
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])
             .in_file("moment-by-drift-s", 1.0,
                      "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
@@ -137,7 +137,7 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // The moment of a drifting hull is N_v u v, so it falls with the measured speed. For hulls N_v/N_δ is −3 ± 1.5,
     // nondimensional.
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
-        ActsOn::MOMENT, "K_over_T * c_v * (q * v)",
+        EffectTarget::MOMENT, "K_over_T * c_v * (q * v)",
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
         |records| records.sway.map(|speed| [-3.0 / speed, 1.5 / speed, UNBOUNDED])),
 ];

@@ -11,10 +11,10 @@
 
 mod backlash;
 mod effect;
-mod file_number;
 mod formula;
 pub mod instant;
 mod list;
+mod scenario_number;
 
 mod second_order;
 mod speed_loss;
@@ -24,12 +24,12 @@ mod wave_heading;
 
 pub use backlash::Backlash;
 pub use effect::{
-    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, EffectReal, OperatingPoint, Parameter, Prior,
-    RecordScales, SwayCoupling,
+    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
+    Parameter, Prior, RecordScales, SwayCoupling,
 };
-pub use file_number::{FileNumber, FileRole};
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
 pub use list::{all, listed_effect, meaning};
+pub use scenario_number::{NumberConversion, ScenarioNumber};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;
 pub use steering_lag::SteeringLag;

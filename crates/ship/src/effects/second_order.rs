@@ -3,7 +3,7 @@
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{
-    Action, ActsOn, CandidateEffect, Description, Effect, Parameter, Prior, RecordScales, SwayCoupling,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, Prior, RecordScales, SwayCoupling,
 };
 use estimation::number::Real;
 
@@ -39,8 +39,8 @@ impl Effect for SecondOrder {
         Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::NONE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::NONE
     }
 
     /// One state, s of [`crate::response`], which the response integrates.
@@ -53,7 +53,7 @@ impl Effect for SecondOrder {
     }
 }
 
-impl<R: Real> Action<R> for SecondOrder {
+impl<R: Real> EffectEquations<R> for SecondOrder {
     fn sway_coupling(&self, p: &[R]) -> Option<SwayCoupling<R>> {
         Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
     }

@@ -5,9 +5,10 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, ActsOn, BaseFactors, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior,
+    RecordScales,
 };
-use super::file_number::PER_DEGREE_SQUARED;
+use super::scenario_number::PER_DEGREE_SQUARED;
 use crate::dynamics::Regressor;
 use crate::particulars::Dimension;
 use estimation::number::Real;
@@ -140,8 +141,8 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::SCALE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {
@@ -172,7 +173,7 @@ impl Effect for SpeedLoss {
     }
 }
 
-impl<R: Real> Action<R> for SpeedLoss {
+impl<R: Real> EffectEquations<R> for SpeedLoss {
     fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(1.0));
     }

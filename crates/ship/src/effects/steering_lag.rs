@@ -1,7 +1,7 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use estimation::number::Real;
 
@@ -53,10 +53,10 @@ impl Effect for SteeringLag {
         })
     }
 
-    fn acts_on(&self) -> ActsOn {
+    fn acts_on(&self) -> EffectTarget {
         match self {
-            Self::DeadTime => ActsOn::NONE,
-            Self::FirstOrder => ActsOn::RUDDER,
+            Self::DeadTime => EffectTarget::NONE,
+            Self::FirstOrder => EffectTarget::RUDDER,
         }
     }
 
@@ -75,7 +75,7 @@ impl Effect for SteeringLag {
     }
 }
 
-impl<R: Real> Action<R> for SteeringLag {
+impl<R: Real> EffectEquations<R> for SteeringLag {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::effect::{
-    Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
 };
 use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
@@ -92,8 +92,8 @@ impl Effect for TransientDisturbance {
         Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::MOMENT
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::MOMENT
     }
 
     fn min_time_constant(&self, p: &[f64]) -> f64 {
@@ -112,7 +112,7 @@ impl Effect for TransientDisturbance {
     }
 }
 
-impl<R: Real> Action<R> for TransientDisturbance {
+impl<R: Real> EffectEquations<R> for TransientDisturbance {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &OperatingPoint<R>) -> R {
         let since = R::from(now.t) - p[1];
         let shape = match self {

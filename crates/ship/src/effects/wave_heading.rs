@@ -2,7 +2,7 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{Action, ActsOn, CandidateEffect, Description, Effect, Parameter, RecordScales};
+use super::effect::{CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, RecordScales};
 use crate::angle::DEGREE;
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
@@ -36,8 +36,8 @@ impl Effect for WaveHeading {
         None
     }
 
-    fn acts_on(&self) -> ActsOn {
-        ActsOn::NONE
+    fn acts_on(&self) -> EffectTarget {
+        EffectTarget::NONE
     }
 
     fn is_environmental(&self) -> bool {
@@ -49,4 +49,4 @@ impl Effect for WaveHeading {
     }
 }
 
-impl<R: Real> Action<R> for WaveHeading {}
+impl<R: Real> EffectEquations<R> for WaveHeading {}

@@ -14,9 +14,9 @@ const STEPS: usize = 50;
 
 impl Response {
     /// Rudder angle (rad) of a steady turn at `yaw_rate` (rad/s) on heading 0, with settled speed and memory; `None` if
-    /// no rudder within 1 rad keeps that rate. Of several rudder angles (beyond stall) the one nearest to amidships.
+    /// no rudder within 1 rad keeps that rate. Of several (beyond stall), the rudder nearest to amidships.
     ///
-    /// Because the yaw rate is given and the rudder is the unknown, the unstable branch is found, too (reversed spiral,
+    /// Because the yaw rate is given and the rudder is the unknown, the unstable branch is included (reversed spiral,
     /// Bech 1968).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
         let mut memory = Memory { state: vec![0.0; self.dimension()], rate: vec![0.0; self.dimension()] };

@@ -120,8 +120,8 @@ fn an_effect_acts_where_it_says() {
     for effect in effects::all() {
         let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
         let z = vec![0.15; effect.states()];
-        let acts = f64::action(effect.as_ref());
-        let acted_on = ActsOn {
+        let acts = f64::effect_equations(effect.as_ref());
+        let acted_on = EffectTarget {
             rudder: acts.rudder(&p, &z, 0.2) != 0.2,
             scale: acts.base_factors(&p, &z, &now) != BaseFactors::unity(),
             moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,

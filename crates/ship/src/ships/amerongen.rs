@@ -7,7 +7,7 @@
 //! Copies of the set give the length of the Zeefakkel as 45 m and as 13.7 m (45 ft), so the ship has no particulars
 //! here. The source also gives the frigate a lag of 1 s of the steering gear, which is not part of the ship.
 
-use super::{Model, Ship};
+use super::{Ship, ShipModel};
 use crate::effects::listed_effect;
 use crate::particulars::Particulars;
 use crate::response::ResponseModel;
@@ -22,7 +22,7 @@ pub fn zeefakkel() -> Ship {
 
 /// Frigate at 9 m/s: T r' + r + n₃ r³ = K δ with K = 0.18 1/s, T = 27 s; rudder to 30° at 10 deg/s.
 ///
-/// Source: that of [`zeefakkel`].
+/// Source: as for [`zeefakkel`].
 pub fn frigate() -> Ship {
     let particulars = Particulars { length: 100.0, speed: 9.0 };
     norrbin(["frigate", "frigate, 100 m, 9 m/s"], Some(particulars), [0.18, 27.0, 0.6])
@@ -38,7 +38,7 @@ fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gai
         particulars,
         rudder_rate: Some(10f64.to_radians()),
         largest_rudder: Some(30f64.to_radians()),
-        model: Model::Response(
+        model: ShipModel::Response(
             ResponseModel::new(vec![listed_effect("nonlinear_damping", "r³")]).with_parameters(parameters),
         ),
     }

@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use super::{KNOT, Model, Ship};
+use super::{KNOT, Ship, ShipModel};
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 
@@ -94,7 +94,7 @@ fn ship(id: &'static str, name: &'static str, parameters: Parameters, speed: f64
         particulars: Some(hull.particulars()),
         rudder_rate: Some(rudder_rate_deg.to_radians()),
         largest_rudder: None,
-        model: Model::Hull(Arc::new(hull)),
+        model: ShipModel::Hull(Arc::new(hull)),
     }
 }
 

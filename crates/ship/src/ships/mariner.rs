@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::user::second_order_response;
-use super::{Model, Ship};
+use super::{Ship, ShipModel};
 use crate::linear::SecondOrderIndices;
 use crate::particulars::Particulars;
 use crate::vessel::abkowitz::{Abkowitz, Derivatives, LateralDerivatives};
@@ -74,7 +74,7 @@ pub const DERIVATIVES: Derivatives = Derivatives {
 /// Rounded indices of [`DERIVATIVES`]: K = 0.185 1/s, T1 = 118 s, T2 = 7.8 s, T3 = 18.5 s.
 pub const INDICES: SecondOrderIndices = SecondOrderIndices { K: 0.185, T1: 118.0, T2: 7.8, T3: 18.5 };
 
-fn mariner(id: &'static str, name: &'static str, source: &'static str, model: Model) -> Ship {
+fn mariner(id: &'static str, name: &'static str, source: &'static str, model: ShipModel) -> Ship {
     Ship {
         id: id.into(),
         name: name.into(),
@@ -100,7 +100,7 @@ pub fn hull() -> Ship {
         "mariner",
         "Mariner class, 15 kn, hull",
         "Chislett and Strøm-Tejsen (1965), in the Marine Systems Simulator",
-        Model::Hull(Arc::new(equations())),
+        ShipModel::Hull(Arc::new(equations())),
     )
 }
 
@@ -112,6 +112,6 @@ pub fn second_order() -> Ship {
         "mariner-second-order",
         "Mariner class, 15 kn, second-order response",
         "Marine Systems Simulator (Fossen)",
-        Model::Response(second_order_response(INDICES, 0.0, Vec::new(), &[])),
+        ShipModel::Response(second_order_response(INDICES, 0.0, Vec::new(), &[])),
     )
 }

@@ -25,7 +25,7 @@ pub mod yukun;
 
 /// Equations of a ship.
 #[derive(Clone)]
-pub enum Model {
+pub enum ShipModel {
     /// Response model with its parameters.
     Response(Response),
     /// Hull with three degrees of freedom.
@@ -48,22 +48,22 @@ pub struct Ship {
     /// Maximum rudder angle to either side, rad; `None` if the source gives none.
     pub largest_rudder: Option<f64>,
     /// Equations.
-    pub model: Model,
+    pub model: ShipModel,
 }
 
 impl Ship {
     /// Equations as a system that can be simulated.
     pub fn dynamics(&self) -> Arc<dyn Dynamics> {
         match &self.model {
-            Model::Response(response) => Arc::new(response.clone()),
-            Model::Hull(hull) => Arc::clone(hull),
+            ShipModel::Response(response) => Arc::new(response.clone()),
+            ShipModel::Hull(hull) => Arc::clone(hull),
         }
     }
 
     /// True K, T and δ_r; `None` unless the ship is exactly first order.
     pub fn first_order(&self) -> Option<FirstOrder> {
         match &self.model {
-            Model::Response(response) if response.model().effects().is_empty() => Some(response.first_order()),
+            ShipModel::Response(response) if response.model().effects().is_empty() => Some(response.first_order()),
             _ => None,
         }
     }

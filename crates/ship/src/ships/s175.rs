@@ -10,7 +10,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{Model, Ship};
+use super::{Ship, ShipModel};
 use crate::dynamics::Input;
 use crate::particulars::Particulars;
 use crate::vessel::{Hull, MIN_SPEED_SHARE};
@@ -148,6 +148,6 @@ pub fn ship() -> Ship {
         particulars: Some(PARTICULARS),
         rudder_rate: Some(5f64.to_radians()),
         largest_rudder: None,
-        model: Model::Hull(Arc::new(ContainerHull::new())),
+        model: ShipModel::Hull(Arc::new(ContainerHull::new())),
     }
 }

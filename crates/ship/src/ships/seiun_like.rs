@@ -11,7 +11,7 @@
 
 use std::sync::Arc;
 
-use super::{KNOT, Model, Ship};
+use super::{KNOT, Ship, ShipModel};
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 
@@ -73,6 +73,6 @@ pub fn ship() -> Ship {
         particulars: Some(hull.particulars()),
         rudder_rate: None,
         largest_rudder: None,
-        model: Model::Hull(Arc::new(hull)),
+        model: ShipModel::Hull(Arc::new(hull)),
     }
 }

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::{Model, Ship};
+use super::{Ship, ShipModel};
 use crate::dynamics::Input;
 use crate::particulars::Particulars;
 use crate::vessel::Hull;
@@ -113,6 +113,6 @@ pub fn ship() -> Ship {
         particulars: Some(PARTICULARS),
         rudder_rate: Some(2.33f64.to_radians()),
         largest_rudder: None,
-        model: Model::Hull(Arc::new(equations())),
+        model: ShipModel::Hull(Arc::new(equations())),
     }
 }

@@ -99,7 +99,7 @@ fn rates_are_finite_wherever_the_state_is() {
                     for sway in [-1.0, 0.0, 1.0] {
                         let mut state = straight.clone();
                         state[state::YAW_RATE] = yaw_rate;
-                        if matches!(ship.model, Model::Hull(_)) {
+                        if matches!(ship.model, ShipModel::Hull(_)) {
                             state[state::SURGE] *= share;
                             state[state::SWAY] = sway * share;
                         }
@@ -128,12 +128,12 @@ fn a_disturbance_acts_like_the_rudder_it_is_equivalent_to() {
         let by_rudder = acceleration(Input { rudder: angle, ..Input::default() }) - still;
         let by_disturbance = acceleration(Input { disturbance: angle, ..Input::default() }) - still;
         match ship.model {
-            Model::Hull(_) => {
+            ShipModel::Hull(_) => {
                 let share = by_disturbance / by_rudder;
                 assert!((0.8..1.25).contains(&share), "{}: {share}", ship.id);
             }
             // T3 is a direct path from the rudder, not from the disturbance, to the yaw acceleration.
-            Model::Response(_) => assert!(by_disturbance >= 0.0 && by_rudder > 0.0, "{}", ship.id),
+            ShipModel::Response(_) => assert!(by_disturbance >= 0.0 && by_rudder > 0.0, "{}", ship.id),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::{Model, Ship};
+use super::{Ship, ShipModel};
 use crate::effects::{Effect, Parameter, SecondOrder};
 use crate::first_order::FirstOrder;
 use crate::linear::SecondOrderIndices;
@@ -72,7 +72,7 @@ fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), Ship
     Ok(())
 }
 
-fn ship(name: String, source: &'static str, particulars: Option<Particulars>, model: Model) -> Ship {
+fn ship(name: String, source: &'static str, particulars: Option<Particulars>, model: ShipModel) -> Ship {
     let (id, source) = ("user".into(), source.into());
     Ship { id, name: name.into(), source, particulars, rudder_rate: None, largest_rudder: None, model }
 }
@@ -89,7 +89,7 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
     let response = Response::first_order_ship(FirstOrder::from_indices(K, T, rudder_bias));
     check_range(&response, &["T", "K", "rudder bias"])?;
     let name = format!("first order, K = {K} 1/s, T = {T} s");
-    Ok(ship(name, "user", particulars, Model::Response(response)))
+    Ok(ship(name, "user", particulars, ShipModel::Response(response)))
 }
 
 /// Second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
@@ -110,7 +110,7 @@ pub fn second_order(
     let name = format!("second order, K = {K} 1/s, T1 = {T1} s, T2 = {T2} s, T3 = {T3} s");
     let response = second_order_response(indices, rudder_bias, Vec::new(), &[]);
     check_range(&response, &["T1", "K", "rudder bias", "T2", "T3"])?;
-    Ok(ship(name, "user", particulars, Model::Response(response)))
+    Ok(ship(name, "user", particulars, ShipModel::Response(response)))
 }
 
 /// Error of particulars from which no hull can be made.
@@ -132,7 +132,7 @@ pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
     let HullParticulars { length, speed, .. } = *particulars;
     let name = format!("MMG hull by particulars, L = {length} m, U = {speed} m/s");
     let scale = Some(Particulars { length, speed });
-    Ok(ship(name, "regressions on the particulars", scale, Model::Hull(Arc::new(hull))))
+    Ok(ship(name, "regressions on the particulars", scale, ShipModel::Hull(Arc::new(hull))))
 }
 
 /// Second-order response with further effects and their parameter values.

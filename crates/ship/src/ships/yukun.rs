@@ -4,7 +4,7 @@
 //! speed are not in the paper and were not found in a source that could be checked: 105 m and 16.7 kn (8.59 m/s) are
 //! nominal values, for nondimensional numbers only (K' = 1.22, T' = 1.33). Rudder rate and rudder bias are not given.
 
-use super::{KNOT, Model, Ship};
+use super::{KNOT, Ship, ShipModel};
 use crate::first_order::FirstOrder;
 use crate::particulars::Particulars;
 use crate::response::Response;
@@ -21,6 +21,6 @@ pub fn ship() -> Ship {
         particulars: Some(Particulars { length: 105.0, speed: 16.7 * KNOT }),
         rudder_rate: None,
         largest_rudder: None,
-        model: Model::Response(Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0))),
+        model: ShipModel::Response(Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0))),
     }
 }

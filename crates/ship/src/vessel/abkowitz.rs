@@ -1,7 +1,7 @@
 //! Abkowitz model: one Taylor series for the forces on hull, propeller and rudder together.
 //!
 //! Prime system ½ρL²U² with the instantaneous speed U: surge perturbation u' = (u − U₀)/U, sway v' = v/U, yaw r' = r
-//! L/U. The series is that of Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr
+//! L/U. Series: Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr
 //! holds −m', Xrv holds m'), so mass appears on the left only.
 //!
 //! The rudder of the source is positive to port. Its sign is changed here only; [`Abkowitz::new`] takes the

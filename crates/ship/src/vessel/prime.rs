@@ -21,7 +21,7 @@ mod wind;
 use estimation::number::Real;
 use nalgebra::{DMatrix, DVector};
 
-use self::equations::{BIAS, COMMON, CUBIC, PolynomialTerm, QUADRATIC};
+use self::equations::{BIAS_TERM, COMMON_TERMS, CUBIC_TERMS, PolynomialTerm, QUADRATIC_TERMS};
 pub use self::equations::{CalmHull, MAX_PRIME_SPEED, PrimeHull};
 pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
@@ -106,9 +106,9 @@ fn is_of_side(key: &str) -> bool {
     matches!(key, "b" | "delta_r")
 }
 
-/// `true` if a coefficient belongs to the trial and not to the ship, so that each trial has its own.
+/// `true` if a coefficient belongs to the trial and not to the ship, such as δ_r: every trial has a separate value.
 pub fn is_trial_specific(key: &str) -> bool {
-    key == BIAS.key
+    key == BIAS_TERM.key
 }
 
 /// `true` for the coefficient of the wind.
@@ -158,9 +158,9 @@ impl HullForm {
     fn polynomials(prior: &HullPrior) -> Option<[Self; 2]> {
         let [quadratic, cubic] = nearest::polynomial_priors(prior)?;
         let form = |equations, terms: &[PolynomialTerm], (mut values, mut covariance): (DVector<f64>, DMatrix<f64>)| {
-            let terms = [&COMMON[..], terms].concat();
+            let terms = [&COMMON_TERMS[..], terms].concat();
             for place in (0..terms.len()).filter(|&place| is_of_side(terms[place].key)) {
-                let extra_sd = if terms[place].key == BIAS.key { RUDDER_BIAS_SD_RAD } else { 0.0 };
+                let extra_sd = if terms[place].key == BIAS_TERM.key { RUDDER_BIAS_SD_RAD } else { 0.0 };
                 let variance = covariance[(place, place)] + values[place] * values[place] + extra_sd * extra_sd;
                 covariance.row_mut(place).fill(0.0);
                 covariance.column_mut(place).fill(0.0);
@@ -178,7 +178,8 @@ impl HullForm {
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
             is_valid.then(|| Self { equations, coefficients, covariance }.with_windage(prior))
         };
-        Some([form(FormEquations::Quadratic, &QUADRATIC, quadratic)?, form(FormEquations::Cubic, &CUBIC, cubic)?])
+        let quadratic = form(FormEquations::Quadratic, &QUADRATIC_TERMS, quadratic)?;
+        Some([quadratic, form(FormEquations::Cubic, &CUBIC_TERMS, cubic)?])
     }
 
     /// MMG form with the priors of its coefficients.
@@ -191,7 +192,7 @@ impl HullForm {
             sd: coefficient.sd,
             ends: ends_of(coefficient.formula.key),
         });
-        let PolynomialTerm { key, symbol, ends } = BIAS;
+        let PolynomialTerm { key, symbol, ends } = BIAS_TERM;
         let bias = HullCoefficient { key, symbol, mean: 0.0, sd: RUDDER_BIAS_SD_RAD, ends };
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances =

@@ -82,13 +82,13 @@ pub fn hull_prior(given: &HullParticulars) -> Result<HullPrior, ParticularsError
     let parameters = hull(&form);
     let mut deviations: Vec<[Parameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
     let coefficient = |formula: &'static CoefficientFormula| {
-        let mean = (formula.of)(&form);
+        let mean = (formula.mean)(&form);
         let sd = match formula.spread {
             Spread::Share(share) => share * mean,
             Spread::Absolute(value) => value,
         };
         deviations.push([sd, -sd].map(|shift| with(parameters, formula, mean + shift)));
-        CoefficientPrior { formula, mean, sd: (sd * sd + variance(&formula.of)).sqrt() }
+        CoefficientPrior { formula, mean, sd: (sd * sd + variance(&formula.mean)).sqrt() }
     };
     let coefficients = FORMULAS.iter().map(coefficient).collect();
     let assumed = PARTICULARS.iter().filter_map(|particular| {
@@ -108,7 +108,7 @@ fn with(mut parameters: Parameters, formula: &CoefficientFormula, value: f64) ->
 
 /// Hull of these dimensions, by the formulas.
 fn hull(form: &HullDimensions) -> Parameters {
-    FORMULAS.iter().fold(blank(form), |hull, formula| with(hull, formula, (formula.of)(form)))
+    FORMULAS.iter().fold(blank(form), |hull, formula| with(hull, formula, (formula.mean)(form)))
 }
 
 /// Hull of these dimensions whose coefficients are not set.

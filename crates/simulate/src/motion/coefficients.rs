@@ -5,15 +5,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Number of coefficients.
-pub const COEFFICIENTS: usize = 8;
+/// Number of coefficients of the planar equations.
+pub const COEFFICIENT_COUNT: usize = 8;
 
 /// Symbols of the coefficients, in the order of [`PlanarCoefficients::to_array`].
-pub const SYMBOLS: [&str; COEFFICIENTS] = ["X_0", "X_vr", "X_dd", "X_dv", "Y_v", "Y_vv", "Y_r", "Y_d"];
+pub const COEFFICIENT_SYMBOLS: [&str; COEFFICIENT_COUNT] = ["X_0", "X_vr", "X_dd", "X_dv", "Y_v", "Y_vv", "Y_r", "Y_d"];
 
 /// Bounds of every coefficient. Bounds on signs ensure that rudder and hull reduce the speed in a turn and damp the
 /// sway; the other bounds are far beyond any ship and keep a search finite.
-pub(crate) const BOUNDS: [[f64; 2]; COEFFICIENTS] =
+pub(crate) const COEFFICIENT_BOUNDS: [[f64; 2]; COEFFICIENT_COUNT] =
     [[1e-3, 2.0], [0.0, 5.0], [0.0, 5.0], [0.0, 5.0], [1e-3, 20.0], [0.0, 100.0], [-3.0, 3.0], [-3.0, 3.0]];
 
 /// Dimensionless coefficients of the planar equations.
@@ -59,21 +59,21 @@ pub struct PlanarCoefficients {
 }
 
 impl PlanarCoefficients {
-    /// Coefficients in the order of [`SYMBOLS`].
-    pub fn to_array(self) -> [f64; COEFFICIENTS] {
+    /// Coefficients in the order of [`COEFFICIENT_SYMBOLS`].
+    pub fn to_array(self) -> [f64; COEFFICIENT_COUNT] {
         let Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d } = self;
         [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d]
     }
 
-    /// Coefficients from values in the order of [`SYMBOLS`], clamped to their bounds.
-    pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
-        let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = clamped(values, BOUNDS);
+    /// Coefficients from values in the order of [`COEFFICIENT_SYMBOLS`], clamped to their bounds.
+    pub fn from_array(values: [f64; COEFFICIENT_COUNT]) -> Self {
+        let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = clamped(values, COEFFICIENT_BOUNDS);
         Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d }
     }
 
     /// First coefficient outside its bounds: symbol, value and bounds; `None` if all are within their bounds.
     pub fn first_out_of_bounds(self) -> Option<(&'static str, f64, [f64; 2])> {
-        let all = SYMBOLS.into_iter().zip(self.to_array()).zip(BOUNDS);
+        let all = COEFFICIENT_SYMBOLS.into_iter().zip(self.to_array()).zip(COEFFICIENT_BOUNDS);
         all.map(|((symbol, value), ends)| (symbol, value, ends))
             .find(|(_, value, [low, high])| !(*low..=*high).contains(value))
     }

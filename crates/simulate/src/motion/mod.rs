@@ -25,7 +25,7 @@ mod planar_ship;
 mod tests;
 
 pub use circle::{TurningCircleCharacteristics, dead_reckoning, turning_circle};
-pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
+pub use coefficients::{COEFFICIENT_COUNT, COEFFICIENT_SYMBOLS, PlanarCoefficients};
 pub use current::{Current, current};
 pub use planar::{MotionError, Planar};
 pub use planar_ship::PlanarShip;

@@ -52,7 +52,7 @@ pub(crate) fn has_diverged(state: State, base: f64) -> bool {
     !is_valid
 }
 
-/// Acting segment at time `t` after the dead time, found by moving `cursor` forward.
+/// Acting segment at time `t` after the dead time; `cursor` moves forward to it.
 pub(crate) fn acting_segment<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
     let segments = path.segments();
     // Same sum as the end of a stride, so that a stride never has zero length.

@@ -8,13 +8,13 @@ use super::{KEY, zig_zag};
 use crate::disturbance::GaussMarkov;
 use crate::limits::{MAX_EXECUTES, MAX_ROWS, MAX_TIME_S};
 use crate::sensor::Spikes;
-use crate::{Expected, Manoeuvre, SimulateError, SimulatedShip, Simulation, Solver};
+use crate::{Manoeuvre, Requirement, SimulateError, SimulatedShip, Simulation, Solver};
 
 fn failure(simulation: &Simulation) -> SimulateError {
     simulation.run(&KEY).expect_err("this must fail")
 }
 
-fn refused(change: impl FnOnce(&mut Simulation)) -> (&'static str, Expected) {
+fn refused(change: impl FnOnce(&mut Simulation)) -> (&'static str, Requirement) {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
     change(&mut simulation);
     match failure(&simulation) {
@@ -30,14 +30,14 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
     assert_eq!(refused(|s| s.helmsman.reads_display_every = Some(1e-300)).0, "helmsman.reads-display-every-s");
     let wander =
         |sd, correlation_time| refused(|s| s.sensors.heading_wander = Some(GaussMarkov { sd, correlation_time }));
-    assert_eq!(wander(-0.1, 10.0), ("sensor.heading-wander.sd-deg", Expected::NotNegative));
-    assert_eq!(wander(0.1, 0.0), ("sensor.heading-wander.correlation-s", Expected::Positive));
-    assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Expected::AtMost(MAX_TIME_S)));
+    assert_eq!(wander(-0.1, 10.0), ("sensor.heading-wander.sd-deg", Requirement::NotNegative));
+    assert_eq!(wander(0.1, 0.0), ("sensor.heading-wander.correlation-s", Requirement::Positive));
+    assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Requirement::AtMost(MAX_TIME_S)));
     let spikes = |probability, size| refused(|s| s.sensors.heading_spikes = Some(Spikes { probability, size }));
-    assert_eq!(spikes(-0.1, 0.1), ("sensor.heading-spikes.probability", Expected::Between(0.0, 1.0)));
-    assert_eq!(spikes(0.1, 0.0), ("sensor.heading-spikes.size-deg", Expected::Positive));
-    assert_eq!(spikes(0.1, 4.0), ("sensor.heading-spikes.size-deg", Expected::AtMost(180.0)));
-    let rows = Expected::Between(1.0, MAX_ROWS as f64);
+    assert_eq!(spikes(-0.1, 0.1), ("sensor.heading-spikes.probability", Requirement::Between(0.0, 1.0)));
+    assert_eq!(spikes(0.1, 0.0), ("sensor.heading-spikes.size-deg", Requirement::Positive));
+    assert_eq!(spikes(0.1, 4.0), ("sensor.heading-spikes.size-deg", Requirement::AtMost(180.0)));
+    let rows = Requirement::Between(1.0, MAX_ROWS as f64);
     assert_eq!(refused(|s| s.sensors.heading_every_rows = Some(0)), ("sensor.heading-every-rows", rows));
 }
 
@@ -82,7 +82,7 @@ fn a_record_that_starts_at_no_execute_is_an_error() {
     assert!(matches!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, .. }));
     simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).until_execute(3);
     let SimulateError::Specification(refused) = failure(&simulation) else { panic!("known before it is run") };
-    assert_eq!((refused.key, refused.expected), ("recording.after-execute", Expected::Execute(3)));
+    assert_eq!((refused.key, refused.expected), ("recording.after-execute", Requirement::Execute(3)));
 }
 
 /// Costs that no estimate includes: a helmsman who reverses the rudder at every small heading change, and a record that
@@ -91,7 +91,7 @@ fn a_record_that_starts_at_no_execute_is_an_error() {
 fn a_run_that_takes_too_much_is_given_up() {
     let mut simulation = zig_zag(10.0, 1e-290, f64::INFINITY, 100.0);
     let given_up = |simulation: &Simulation| match failure(simulation) {
-        SimulateError::TooLong { what, most, .. } => (what, most),
+        SimulateError::TooLong { quantity, limit, .. } => (quantity, limit),
         other => panic!("expected to be given up, found {other}"),
     };
     assert_eq!(given_up(&simulation), ("executes", MAX_EXECUTES));
@@ -107,5 +107,5 @@ fn a_record_with_too_few_rows_is_an_error() {
     // Enough rows, but a heading only in every fiftieth.
     simulation = zig_zag(10.0, 10.0, 2.5, 300.0);
     simulation.sensors.heading_every_rows = Some(50);
-    assert_eq!(failure(&simulation), SimulateError::Record(TrialError::TooShort { needed: 8, found: 7 }));
+    assert_eq!(failure(&simulation), SimulateError::Record(TrialError::TooShort { needed: 8, rows: 7 }));
 }

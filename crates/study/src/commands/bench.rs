@@ -83,7 +83,7 @@ pub fn run_benchmark(
     folder: Option<&ResultFolder>,
     observer: &dyn Observer,
 ) -> Result<BenchDocument, Failure> {
-    let desk = tempfile::tempdir().map_err(|error| Failure::work(format!("failed to make a folder: {error}")))?;
+    let desk = tempfile::tempdir().map_err(|error| Failure::execution(format!("failed to make a folder: {error}")))?;
     let paths = match &request.scenarios[..] {
         [] => embedded::unpack(desk.path())?,
         paths => paths.to_vec(),

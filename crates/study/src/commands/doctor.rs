@@ -54,5 +54,6 @@ fn probe(folder: &Path) -> Result<(), Failure> {
     let folder = ResultFolder::make(folder)?;
     folder.write(PROBE, "written and read\n")?;
     let path = folder.path().join(PROBE);
-    std::fs::remove_file(&path).map_err(|error| Failure::work(format!("failed to remove {}: {error}", path.display())))
+    std::fs::remove_file(&path)
+        .map_err(|error| Failure::execution(format!("failed to remove {}: {error}", path.display())))
 }

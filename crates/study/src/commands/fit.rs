@@ -63,7 +63,7 @@ pub fn publish(
     let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
     let table = fit_page::answers(document, curves);
     let output = CommandOutput { frame: [&head, ""], table: &table, notes: &notes, document: text };
-    screen::print_output(common, &output, &shortened(document.answer_warnings()))
+    screen::print_output(common, &output, &shortened(document.verdict_warnings()))
 }
 
 /// Maximum number of warnings on the screen.

@@ -50,5 +50,5 @@ fn line(LogFit { file, verdict, warnings, error, .. }: &LogFit) -> Result<String
     let error = error.as_ref().map(ErrorEntry::from_failure);
     let (file, verdict) = (file.display().to_string(), verdict.as_ref());
     let entry = LogFitEntry { schema: "fit-each/1", file, verdict, warnings, error };
-    serde_json::to_string(&entry).map_err(Failure::work)
+    serde_json::to_string(&entry).map_err(Failure::execution)
 }

@@ -71,7 +71,7 @@ pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure>
 fn identifiers() -> Result<Table, Failure> {
     let mut table = Table::new(TableHead::default().texts(["id", "method", "settings"]));
     for settings in registry::default_settings() {
-        let method = settings.build().map_err(|error| Failure::work(format!("default settings: {error}")))?;
+        let method = settings.build().map_err(|error| Failure::execution(format!("default settings: {error}")))?;
         table.push([method.id().to_owned(), method.summary().to_owned(), keys(&settings)]);
     }
     Ok(table)

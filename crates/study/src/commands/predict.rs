@@ -98,7 +98,7 @@ fn default_folder(model: &Path) -> PathBuf {
 /// Current estimated from a record.
 fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Current, Failure> {
     let records = read_for_replay(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
-    records.first().and_then(turn::current_of).ok_or_else(|| {
+    records.first().and_then(turn::estimated_current).ok_or_else(|| {
         Failure::input(format!(
             "--current-from {}: no current can be read from this record; give a circle of 720° or more with positions north_m and east_m",
             path.display()

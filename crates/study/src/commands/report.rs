@@ -138,7 +138,7 @@ fn show(page: &Path) -> Result<(), Failure> {
     let opened = Command::new(program).args(options).arg(page).stdout(Stdio::null()).stderr(Stdio::null()).status();
     match opened {
         Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(Failure::work(format!("{program} did not open {shown} ({status}); open it by hand"))),
-        Err(error) => Err(Failure::work(format!("failed to run {program}: {error}; open {shown} by hand"))),
+        Ok(status) => Err(Failure::execution(format!("{program} did not open {shown} ({status}); open it by hand"))),
+        Err(error) => Err(Failure::execution(format!("failed to run {program}: {error}; open {shown} by hand"))),
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use campaign::collect::{collect, collect_shard};
 use campaign::failure::Failure;
-use campaign::files::MANIFEST;
+use campaign::files::MANIFEST_FILE;
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
 use campaign::shard::default_folder;
@@ -26,7 +26,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
     }
     let theme = request.style.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name));
-    let folder = ResultFolder::make(&folder_for(MANIFEST, &place)?)?;
+    let folder = ResultFolder::make(&folder_for(MANIFEST_FILE, &place)?)?;
     let terminal = Terminal::new("trials", common.quiet);
     let Some(shard) = request.shard else {
         let stored = collect(&scenario, &folder, request.restart, &terminal)?;
@@ -36,7 +36,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
     let place = folder.path().display().to_string();
     let line = format!(
         "shard {shard} of {} is in {place}; copy all {} shards into one folder and run `study report` on it",
-        scenario.name, shard.of
+        scenario.name, shard.count
     );
     reply(common, &ShardAnswer { folder: place, manifest: &manifest }, &line)
 }

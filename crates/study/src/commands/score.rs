@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::outside_estimates::{self, TRIALS, Trials};
+use campaign::outside_estimates::{self, TRIALS_FILE, Trials};
 use campaign::scenario::Scenario;
 use campaign::scenario::name;
 use campaign::shard::default_folder;
@@ -61,7 +61,7 @@ pub fn run(request: &ScoreRequest, common: &CommonOptions) -> Result<(), Failure
 
 /// Scenario of the answers, with the seed of their trials.
 fn scenario_of(request: &ScoreRequest, common: &CommonOptions) -> Result<Scenario, Failure> {
-    let beside = request.answers.with_file_name(TRIALS);
+    let beside = request.answers.with_file_name(TRIALS_FILE);
     let scenario = match &request.scenario {
         Some(named) => named,
         None if beside.is_file() => &beside,

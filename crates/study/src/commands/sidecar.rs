@@ -47,7 +47,7 @@ pub fn run(SidecarRequest { log }: &SidecarRequest, common: &CommonOptions) -> R
 
 /// Prints the path of the description; prints the description itself if it is in no file or JSON is requested.
 fn tell(text: &str, written: Option<(&Path, &Path)>, common: &CommonOptions) -> Result<(), Failure> {
-    let described: toml::Table = text.parse().map_err(Failure::work)?;
+    let described: toml::Table = text.parse().map_err(Failure::execution)?;
     let file = written.map(|(path, _)| path.display().to_string());
     let line = match written {
         None => text.trim_end().to_owned(),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
-use campaign::outside_estimates::{TRIALS, Trials, part_name, record_name};
+use campaign::outside_estimates::{TRIALS_FILE, Trials, part_name, record_name};
 use campaign::scenario::Scenario;
 use campaign::shard::TrialId;
 use indicatif::ParallelProgressIterator;
@@ -70,7 +70,7 @@ fn list(scenario: &Scenario, tasks: &[TrialId], names: &[String], folder: &Resul
     }
     folder.write("trials.csv", table.to_csv())?;
     let text = toml::to_string(&Trials::from_scenario(scenario)).on("describe the trials in", folder.path())?;
-    folder.write(TRIALS, format!("{SCORE}{text}"))
+    folder.write(TRIALS_FILE, format!("{SCORE}{text}"))
 }
 
 /// First line of the description of the trials.

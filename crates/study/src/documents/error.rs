@@ -1,6 +1,6 @@
 //! JSON document of a failure: the message and its parts, as `--format json` writes them to standard error.
 
-use campaign::failure::{Blame, Failure, FailureParts};
+use campaign::failure::{Failure, FailureKind, FailureParts};
 use serde::Serialize;
 
 use crate::screen;
@@ -23,7 +23,7 @@ pub struct ErrorEntry<'a> {
     #[schemars(extend("const" = "error"))]
     pub severity: &'static str,
     /// Kind of failure: the input is wrong, the work could not be done, or it was stopped on request.
-    pub blame: Blame,
+    pub blame: FailureKind,
     /// The whole message, for a person.
     pub message: &'a str,
     /// Parts of the message.
@@ -33,14 +33,14 @@ pub struct ErrorEntry<'a> {
 
 impl<'a> ErrorEntry<'a> {
     /// Entry of a failure.
-    pub fn from_failure(Failure { blame, message, parts }: &'a Failure) -> Self {
+    pub fn from_failure(Failure { kind: blame, message, parts }: &'a Failure) -> Self {
         Self { severity: "error", blame: *blame, message, parts }
     }
 }
 
 /// Document of a failure in one line. Fails if it cannot be written as JSON.
 pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
-    let exit_code = screen::exit_code(failure.blame);
+    let exit_code = screen::exit_code(failure.kind);
     let document = ErrorDocument { schema: "error/1", error: ErrorEntry::from_failure(failure), exit_code };
     serde_json::to_string(&document)
 }

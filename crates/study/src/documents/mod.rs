@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use campaign::disk;
 use campaign::failure::{Failure, OnPath};
-use campaign::files::MANIFEST;
+use campaign::files::MANIFEST_FILE;
 use campaign::folder::ResultFolder;
 use document::ErrorCode;
 use serde::Serialize;
@@ -28,7 +28,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use trial::Trial;
 
-use crate::records::file_of;
+use crate::records::file_and_hash;
 use crate::screen;
 use answers::{CommandAnswer, Versioned};
 
@@ -54,7 +54,7 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// Folder for the results of a command. Fails if it holds results of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST].into_iter().filter(|name| *name != document);
+    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST_FILE].into_iter().filter(|name| *name != document);
     match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",
@@ -75,7 +75,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
         return Ok(place);
     };
     let is_same = |trial: &Trial| {
-        let (file, sha256) = file_of(trial);
+        let (file, sha256) = file_and_hash(trial);
         records.iter().any(|(file_then, hash)| file_then == file || hash == sha256)
     };
     if records.len() == trials.len() && trials.iter().all(is_same) {
@@ -86,7 +86,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
         "{} is the result of {}, not of {}; give another folder with --out",
         path.display(),
         few(&files),
-        few(&trials.iter().map(|trial| file_of(trial).0.to_owned()).collect::<Vec<_>>())
+        few(&trials.iter().map(|trial| file_and_hash(trial).0.to_owned()).collect::<Vec<_>>())
     )))
 }
 
@@ -173,7 +173,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 ///
 /// Fails if it cannot be written as JSON.
 pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
-    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::work)
+    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::execution)
 }
 
 /// Writes a document to standard output.

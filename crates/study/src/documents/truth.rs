@@ -69,7 +69,7 @@ pub struct TrueMotion {
 }
 
 impl TrueIndices {
-    fn of(response: FirstOrder) -> Self {
+    fn from_response(response: FirstOrder) -> Self {
         Self { K_per_s: response.K(), T_s: response.T(), delta_r_deg: to_deg(response.rudder_bias) }
     }
 }
@@ -92,8 +92,8 @@ pub fn truth(
         seed: scenario.seed,
         cell: cell.title(),
         replicate: task.replicate,
-        nearest: truths.nearest.map(TrueIndices::of),
-        base: truths.base.map(TrueIndices::of),
+        nearest: truths.nearest.map(TrueIndices::from_response),
+        base: truths.base.map(TrueIndices::from_response),
         missing: trial_spec.specification.missing.clone(),
         drawn: scenario.draws.iter().cloned().zip(trial_spec.drawn.iter().copied()).collect(),
         executes_s: truth.executes.iter().map(|execute| execute.time).collect(),

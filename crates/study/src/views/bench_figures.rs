@@ -4,7 +4,7 @@ use campaign::benchmark::board::{Board, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
-use campaign::statistics::MIN_SUMMARISED;
+use campaign::statistics::MIN_SUMMARISED_VALUES;
 use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
@@ -93,12 +93,12 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let column = |board: &&Board| {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
-            let ratios = cases.filter_map(|case| case.ratio_of(method, &results.reference));
+            let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
             let look = Look { hollow: true, ..curve_origin(method).look() };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
-            if board.cases < MIN_SUMMARISED {
+            if board.cases < MIN_SUMMARISED_VALUES {
                 return points(method);
             }
             let standing = board.standings.iter().find(|standing| standing.method == **method);
@@ -123,7 +123,8 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
             "Score: rms heading error; for K and T the larger relative error. Left of the line a method is better than {}. Medians over \
-             the cases; hollow: single cases if fewer than {MIN_SUMMARISED}; bars: 95 %, for six independent records or more.",
+             the cases; hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; bars: 95 %, for six independent \
+             records or more.",
             results.reference
         )),
         ..NamedRows::default()

@@ -201,7 +201,7 @@ impl<'a> ComparedMethods<'a> {
     }
 
     /// Statistic of a panel, and whether it is too large to set an axis.
-    fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
+    fn statistic(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
         let figure = self.measure.statistic(self.summary.performance(cell, method)?, panel)?;
         let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
         let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
@@ -215,7 +215,7 @@ impl<'a> ComparedMethods<'a> {
 
     /// Plotted value and interval; infinite for a value that is too large.
     fn drawn(&self, cell: usize, method: usize, panel: usize) -> Option<(f64, Option<[f64; 2]>)> {
-        let (figure, is_worthless) = self.of(cell, method, panel)?;
+        let (figure, is_worthless) = self.statistic(cell, method, panel)?;
         Some(if is_worthless { (f64::INFINITY, None) } else { (figure.value, figure.ci95) })
     }
 
@@ -233,7 +233,7 @@ impl<'a> ComparedMethods<'a> {
         let cells = || groups.iter().flat_map(|group| &group.cells);
         let places = cells().flat_map(|&cell| self.methods.iter().map(move |&method| (cell, method)));
         let panels = 0..self.measure.panels();
-        let figures_at = |(cell, method)| panels.clone().filter_map(move |panel| self.of(cell, method, panel));
+        let figures_at = |(cell, method)| panels.clone().filter_map(move |panel| self.statistic(cell, method, panel));
         let is_exact = self.measure == ErrorMeasure::Rms
             && places.flat_map(figures_at).any(|(figure, _)| figure.value == MIN_ERROR);
         let is_share = self.measure == ErrorMeasure::Coverage;
@@ -281,8 +281,7 @@ pub fn over_axes(
         return Vec::new();
     }
     let is_worth_it = |group: &ChartGroup| {
-        let records =
-            |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.performance(cell, method));
+        let records = |&cell: &usize| (0..design.methods.len()).filter_map(move |k| summary.performance(cell, k));
         group.cells.iter().flat_map(records).any(says_something)
     };
     let parts: Vec<&[ChartGroup]> = match number {

@@ -68,9 +68,9 @@ pub fn scaled_by_other_ships(lines: &[PredictionSummary], design: &Design) -> Op
     let columns = ["inside 90 %", "inside scaled", "interval score of the value", "score scaled"];
     let mut table = Table::new(head.numbers(columns).unit("%"));
     for ((method, name), judged) in &by_ship {
-        let others: Vec<_> = lines.iter().filter(|line| line.method == *method && ship(line) != name).collect();
+        let other_ships: Vec<_> = lines.iter().filter(|line| line.method == *method && ship(line) != name).collect();
         let mut cells = vec![name.clone(), design.methods[*method].label.clone()];
-        match ConformalScaling::from_others(judged, &others) {
+        match ConformalScaling::from_calibration(judged, &other_ships) {
             Some(scaling) => {
                 cells.push(fixed(scaling.factor, 2));
                 cells.extend(scaling.coverage.map(|share| fixed(100.0 * share, 1)));

@@ -58,13 +58,13 @@ mod tests {
 
     #[test]
     fn records_of_one_trial_are_one_row() {
-        let known = TrialParticularsEntry { ship_name: Some("Kempf".into()), ..TrialParticularsEntry::default() };
+        let declared = TrialParticularsEntry { ship_name: Some("Kempf".into()), ..TrialParticularsEntry::default() };
         let unknown = TrialParticularsEntry::default();
         let rows = |entries: [&TrialParticularsEntry; 2]| {
             let table = particulars(entries.map(|entry| (String::from("run"), entry)).into_iter());
             table.map(|table| table.to_text().lines().count())
         };
-        assert_eq!([rows([&known; 2]), rows([&unknown; 2])], [Some(3), None]);
-        assert_eq!(rows([&known, &unknown]), Some(4));
+        assert_eq!([rows([&declared; 2]), rows([&unknown; 2])], [Some(3), None]);
+        assert_eq!(rows([&declared, &unknown]), Some(4));
     }
 }

@@ -79,7 +79,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         mark: "###",
         answers: answers(document, curves),
         records: document.single_records.as_ref().map(indices::single_record_table),
-        warnings: document.answer_warnings().map(ToString::to_string).collect(),
+        warnings: document.verdict_warnings().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
         scales: scales(document),
         remarks: document.notes().map(ToString::to_string).collect(),
@@ -173,7 +173,7 @@ fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
             "\nThe output-error residual falls from {residual}° to {with_terms}° with more hull terms, but check the readings before \
              the ship: see the warnings."
         ),
-        Some(ResidualKind::LacksEffect) if !verdict.falls_with_ship_terms() => format!(
+        Some(ResidualKind::LacksEffect) if !verdict.improves_with_ship_terms() => format!(
             "\nThe output-error residual, {residual}°, is more than noise although a calm is declared: the model may lack an \
              effect; run `study trace`."
         ),
@@ -232,8 +232,7 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
 /// Files of renamed records, reasons of failed methods, and zig-zag characteristics of the records.
 fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let renamed = curves.records.iter().filter(|record| record.is_renamed);
-    let renamed =
-        renamed.map(|record| format!("{} is {}\n", names::record(&record.name), record.file)).collect::<String>();
+    let renamed = renamed.map(|run| format!("{} is {}\n", names::record(&run.name), run.file)).collect::<String>();
     let failed = |entry: &MethodEntry| Some(format!("{} failed: {}\n", entry.method, entry.reason.as_ref()?));
     let failed = document.methods.iter().filter_map(failed).collect::<String>();
     let mut notes: String =

@@ -1,6 +1,6 @@
 //! Growth of the heading error with the horizon of a replay, on held-out records.
 
-use campaign::statistics::MIN_SUMMARISED;
+use campaign::statistics::MIN_SUMMARISED_VALUES;
 use document::trace::{HorizonEntry, TraceDocument};
 use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::{counted, significant};
@@ -65,7 +65,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
         over(&|entries| entries.iter().map(|entry| error(entry)).reduce(fold).unwrap_or(f64::NAN))
     };
     let mut layers = Vec::new();
-    if records.len() >= MIN_SUMMARISED {
+    if records.len() >= MIN_SUMMARISED_VALUES {
         layers.push(Layer::band("", [end(f64::min), end(f64::max)], look.colour, 0.15));
     } else if records.len() > 1 {
         layers.extend(records.iter().map(|record| {
@@ -91,7 +91,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let row = PanelRow::new(AxisSpec::new("heading error, rms [°]", TickRule::Logarithmic), 0.36);
     let each = match records.len() {
         1 => "",
-        2..MIN_SUMMARISED => " Thin: every record.",
+        2..MIN_SUMMARISED_VALUES => " Thin: every record.",
         _ => " Bands: the range of the records.",
     };
     let caption = format!(

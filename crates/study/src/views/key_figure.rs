@@ -4,7 +4,7 @@
 use campaign::design::Design;
 use campaign::scenario::Highlight;
 use report::figures::{
-    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack, WordsPlace,
+    CellMap, LabelPlacement, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack,
 };
 use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
@@ -80,7 +80,7 @@ fn pale(layer: Layer) -> Layer {
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(colour, _) | LayerKind::Words(colour, ..) => *colour = QUIET,
+        LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour = QUIET,
         LayerKind::Record => {}
     }
     Layer { kind, ..layer }.within(ASIDE)
@@ -157,12 +157,12 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
             }
             // Above a rising curve there is room to the left, below it to the right.
             let is_rising = curve[(place + 1).min(curve.len() - 1)].1 > curve[place.saturating_sub(1)].1;
-            let words = LayerKind::Words(
+            let labels = LayerKind::Labels(
                 look.colour,
-                WordsPlace { is_above, is_right: is_above != is_rising },
+                LabelPlacement { is_above, is_right: is_above != is_rising },
                 vec![text.1.clone()],
             );
-            values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, words));
+            values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, labels));
             written.push(text);
         }
         is_above ^= written.len() > before;
@@ -226,13 +226,13 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) {
 
 /// Mean of rows of a map, column by column; a single row is unchanged.
 fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
-    let [first, others @ ..] = members else { return Vec::new() };
+    let [first, further @ ..] = members else { return Vec::new() };
     let mean = |column: usize| {
         let values = members.iter().filter_map(|&row| panel[row][column].value).collect::<Vec<_>>();
         let value = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
         MapCell { value, interval: None, ..panel[*first][column] }
     };
-    if others.is_empty() { panel[*first].clone() } else { (0..panel[*first].len()).map(mean).collect() }
+    if further.is_empty() { panel[*first].clone() } else { (0..panel[*first].len()).map(mean).collect() }
 }
 
 #[cfg(test)]
@@ -353,12 +353,12 @@ mod tests {
             panic!()
         };
         let layers = &data.stacks[0].panels[0].layers;
-        let words = layers.iter().filter_map(|layer| match &layer.kind {
-            LayerKind::Words(.., words) => Some((layer.curve.x.clone(), words.clone())),
+        let labels = layers.iter().filter_map(|layer| match &layer.kind {
+            LayerKind::Labels(.., labels) => Some((layer.curve.x.clone(), labels.clone())),
             _ => None,
         });
         assert_eq!(
-            words.collect::<Vec<_>>(),
+            labels.collect::<Vec<_>>(),
             [(vec![2.0], vec![String::from("0.12 %")]), (vec![2.0], vec![String::from("0.13 %")])]
         );
         // Several that are not highlighted are one band; infinite errors are beyond its greatest finite value.

@@ -7,7 +7,7 @@ use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{counted, fixed, significant};
 use report::palette::{Look, Marker, QUIET, RECORD, RGBColor, SOLID};
 
-use super::pooled_charts::ALL;
+use super::pooled_charts::ALL_CELLS_ROW;
 
 /// Look of a method that the figure does not highlight.
 const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
@@ -78,7 +78,7 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
 
 /// `true` if a row is not highlighted.
 fn is_pale(name: &String, about: &[String]) -> bool {
-    name != ALL && !about.contains(name)
+    name != ALL_CELLS_ROW && !about.contains(name)
 }
 
 /// Moves the highlighted rows up, below the row of all.

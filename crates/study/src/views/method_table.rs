@@ -68,7 +68,7 @@ fn remark(entry: &MethodEntry) -> String {
 
 #[cfg(test)]
 mod tests {
-    use identify::answer;
+    use identify::method_entry::{failure_entry, success_entry};
     use identify::{Estimate, IdentifyError, Uncertainty};
     use ship::FirstOrder;
 
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_failed_method_is_a_row_with_its_reason() {
-        let failed = answer::failure_entry("srivc", &IdentifyError::NoTrial);
+        let failed = failure_entry("srivc", &IdentifyError::NoTrial);
         let text = table(&[failed], &[]).to_text();
         assert!(text.contains("srivc") && text.contains("failed: no trial"), "{text}");
     }
@@ -103,7 +103,7 @@ mod tests {
             diagnostics: Vec::new(),
             warnings: Vec::new(),
         };
-        let remark_at = |stop, inverse_time| remark(&answer::success_entry("one", &estimate(stop, inverse_time), None));
+        let remark_at = |stop, inverse_time| remark(&success_entry("one", &estimate(stop, inverse_time), None));
         assert_eq!(remark_at(StopReason::Converged, 0.1), "");
         assert_eq!(remark_at(StopReason::RangeLimit, 0.1), "at a bound");
         assert_eq!(remark_at(StopReason::RangeLimit, -0.1), "course-unstable, at a bound");

@@ -82,10 +82,10 @@ mod tests {
     fn the_first_failure_in_order_is_told() {
         let work = (0..64).into_par_iter().map(|k| match k {
             // The earlier in order, the later in time.
-            8.. => Err(Failure::work(format!("figure {k}"))),
+            8.. => Err(Failure::execution(format!("figure {k}"))),
             7 => {
                 std::thread::sleep(std::time::Duration::from_millis(5));
-                Err(Failure::work("figure 7".to_owned()))
+                Err(Failure::execution("figure 7".to_owned()))
             }
             _ => Ok(()),
         });

@@ -72,8 +72,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
                 let look = curve_origin(design, method).look();
-                let violin =
-                    |shape: &summary::ErrorDensity| RowKind::Violin(look, shape.density.clone(), shape.quantiles);
+                let violin = |pdf: &summary::ErrorDensity| RowKind::Violin(look, pdf.density.clone(), pdf.quantiles);
                 density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
             })
             .collect(),
@@ -194,7 +193,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
 }
 
 /// Name of the row of all cells together.
-pub const ALL: &str = "all";
+pub const ALL_CELLS_ROW: &str = "all";
 
 /// Maximum number of rows of single cells in a figure of predictions; for more cells the rows are the points of the
 /// longest axis.
@@ -231,7 +230,7 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
 /// Coverage and width of 90 % prediction intervals, by row and method: the mean share and the median width over the
 /// predicted characteristics, on the range of the shares and of the middle half of the widths; `None` without
 /// predictions.
-pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
+pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let rows = prediction_rows(design);
     let several = rows.len() > 1;
@@ -257,7 +256,7 @@ pub fn predictions(design: &Design, summary: &Summary) -> Option<NamedRows> {
         RowsColumn { x, rows, lines, ..RowsColumn::default() }
     };
     let names = rows.iter().map(|(name, _)| name.clone());
-    let names = several.then(|| String::from(ALL)).into_iter().chain(names).collect();
+    let names = several.then(|| String::from(ALL_CELLS_ROW)).into_iter().chain(names).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside_share();
     let width = |line: &PredictionSummary| 100.0 * line.relative(line.width());
     (!summary.predictions.is_empty()).then(|| NamedRows {

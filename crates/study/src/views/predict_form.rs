@@ -2,7 +2,7 @@
 
 use askama::Template;
 use campaign::statistics::grouped;
-use predict::form::{ImoFormEntry, MAX_DECIMALS, STOPPING, TRACK_REACH_LENGTHS};
+use predict::form::{ImoFormEntry, MAX_DECIMALS, MAX_TRACK_REACH_LENGTHS, STOPPING_SECTION};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
@@ -44,7 +44,7 @@ struct FormPage<'a> {
 pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
     let is_declared = |(section, section_entries): &(&str, Vec<&ImoFormEntry>)| {
-        section_entries.iter().all(|entry| entry.side.is_none()) && *section != STOPPING
+        section_entries.iter().all(|entry| entry.side.is_none()) && *section != STOPPING_SECTION
     };
     let (declared, measured): (Vec<_>, Vec<_>) = sections.partition(is_declared);
     let declaration = |(section, entries): (_, Vec<&ImoFormEntry>)| {
@@ -106,7 +106,7 @@ pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
 
 fn criterion(entry: &ImoFormEntry) -> String {
     match entry.limit {
-        Some(TRACK_REACH_LENGTHS) if entry.section == STOPPING => {
+        Some(MAX_TRACK_REACH_LENGTHS) if entry.section == STOPPING_SECTION => {
             String::from("≤ 15, up to 20 where the Administration allows")
         }
         Some(limit) => format!("≤ {}", fixed(limit, 1)),

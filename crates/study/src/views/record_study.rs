@@ -9,7 +9,7 @@ use campaign::folder::ResultFolder;
 use campaign::manifest::Manifest;
 use campaign::rows::StudyRow;
 use campaign::scenario::Prose;
-use campaign::statistics::{MIN_SUMMARISED, Statistic, distinct};
+use campaign::statistics::{MIN_SUMMARISED_VALUES, Statistic, distinct};
 use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
@@ -143,7 +143,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
                 ..RowItem::new("", RowKind::Mark(pale, error, None)).clipped_if_far()
             })
             .collect();
-        let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED);
+        let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED_VALUES);
         items.extend(median.map(|median| RowItem {
             number: Some(degrees(median.value)),
             place: RowPlace::Beside,
@@ -230,7 +230,7 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
 #[template(path = "records.md", escape = "none")]
 struct RecordsPage<'a> {
     manifest: &'a Manifest,
-    words: &'a Prose,
+    prose: &'a Prose,
     brief: Table,
     coverage: Option<Table>,
     figures: PlacedFigures<FigurePlace>,
@@ -241,7 +241,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     let predictions = &summary.predictions;
     let page = RecordsPage {
         manifest,
-        words: &design.prose,
+        prose: &design.prose,
         brief: brief(&summary.records, design),
         coverage: (!predictions.is_empty()).then(|| coverage_table::pooled(predictions, design)),
         figures: PlacedFigures(figures),
@@ -277,7 +277,7 @@ pub fn write_files(
     let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
     let all = || {
         let judged = judges.then(|| (FigurePlace::Traces, judged(&rows, &made.records, design)));
-        let held = study_figures::predictions(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
+        let held = study_figures::prediction_coverage(design, &made).map(|figure| (FigurePlace::AllTrials, figure));
         judged.into_iter().chain(held).collect()
     };
     let figures = study_figures::chosen_figures(all, design, choice);

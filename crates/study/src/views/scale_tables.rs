@@ -15,7 +15,7 @@ pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
     };
-    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(symbols_of);
+    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::Undecided].map(symbols_of);
     let mut parts = Vec::new();
     for (symbols, predicates) in [
         (differing, ["does not scale", "do not scale"]),
@@ -54,8 +54,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
     let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval().texts(["sd"]);
     let mut table = Table::new(head.numbers(["T′"]).interval().texts(["sd"]));
-    let sd =
-        |quantity: &Quantity| quantity.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
+    let sd = |value: &Quantity| value.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
     for (name, k, t) in rows {
         let mut cells = vec![name.clone()];
         for quantity in [k, t] {

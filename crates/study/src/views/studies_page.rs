@@ -45,8 +45,8 @@ struct StudiesPage {
 
 /// Checks that all folders are those of studies, and that the page replaces no file of another program.
 pub fn check_folders(studies: &[PathBuf], place: &Path) -> Result<(), Failure> {
-    if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST).is_file()) {
-        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST);
+    if let Some(folder) = studies.iter().find(|folder| !folder.join(files::MANIFEST_FILE).is_file()) {
+        let problem = format!("it holds no {}, so it is not the folder of a study", files::MANIFEST_FILE);
         return Err(Failure::in_file(folder, format!("{problem}; give folders of studies, or this folder alone")));
     }
     let path = place.join(PAGE);
@@ -70,14 +70,14 @@ pub fn write(studies: &[PathBuf], target: &ResultFolder) -> Result<PathBuf, Fail
 }
 
 fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
-    let path = folder.join(files::MANIFEST);
+    let path = folder.join(files::MANIFEST_FILE);
     let missing = || Failure::in_file(&path, "there is no such file any more");
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
-    let words = manifest.prose();
+    let prose = manifest.prose();
     let unfit = |stem: &str, unfit| {
         Failure::in_file(&path, format!("`output.figure` is {}; {unfit}", name::quoted_beginning(stem)))
     };
-    let figure = match &words.output.figure {
+    let figure = match &prose.output.figure {
         Some(stem) => {
             Some(name::check_file_name(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?)
         }
@@ -88,8 +88,8 @@ fn section(folder: &Path, place: &Path) -> Result<Section, Failure> {
         // With --out the folder may have a name other than that of the scenario.
         name: whole.file_name().map_or(manifest.name, |name| name.to_string_lossy().into_owned()),
         folder: way(place, &whole),
-        question: words.question.trim().to_owned(),
-        finding: words.finding.trim().to_owned(),
+        question: prose.question.trim().to_owned(),
+        finding: prose.finding.trim().to_owned(),
         figure,
     })
 }

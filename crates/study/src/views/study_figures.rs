@@ -213,17 +213,17 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
 }
 
 /// Figure of the coverage of prediction intervals.
-pub fn predictions(design: &Design, summary: &Summary) -> Option<PageFigure> {
+pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<PageFigure> {
     let caption = "Share of trials in which the 90 % interval of an unseen manoeuvre contains the true value, and the \
         width of the interval. \
                    Left of the line a method is overconfident; a wide interval covers more but says less.";
-    pooled_charts::predictions(design, summary).map(|data| under_its_finding("predictions", caption, data))
+    pooled_charts::prediction_coverage(design, summary).map(|data| under_its_finding("predictions", caption, data))
 }
 
 fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let design = &stored.design;
     let mut figures = Vec::new();
-    figures.extend(predictions(design, summary));
+    figures.extend(prediction_coverage(design, summary));
     figures.extend(pooled_charts::ratios_to_first_point(design, summary).map(|(data, method)| {
         let caption = format!(
             "Mean K and T of {method}, over those of the first row: where they change from row to row, K and T depend on the trial, \

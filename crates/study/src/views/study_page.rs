@@ -58,7 +58,7 @@ fn title<'a>(showcase: &'a Showcase, otherwise: &'a str) -> &'a str {
 #[template(path = "study.md", escape = "none")]
 struct StudyPage<'a> {
     manifest: &'a Manifest,
-    words: &'a Prose,
+    prose: &'a Prose,
     trials: Vec<FirstTrial<'a>>,
     named: Option<NamedEffects>,
     coverage: Option<Table>,
@@ -114,7 +114,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
     let is_predicted = !summary.predictions.is_empty();
     let page = StudyPage {
         manifest,
-        words: &design.prose,
+        prose: &design.prose,
         trials: showcases.iter().enumerate().map(trial).collect(),
         named: (!tracing.is_empty()).then(named),
         coverage: is_predicted.then(|| coverage_table::pooled(&summary.predictions, design)),

@@ -163,8 +163,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
 fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
     const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
-    let parts: Vec<(&str, &str)> =
-        rules.iter().map(|(label, ..)| label.split_once(", ").unwrap_or(("", label))).collect();
+    let parts: Vec<(&str, &str)> = rules.iter().map(|(name, ..)| name.split_once(", ").unwrap_or(("", name))).collect();
     let kinds = distinct(parts.iter().map(|(kind, _)| *kind));
     let variants = distinct(parts.iter().map(|(_, variant)| *variant));
     let column = |title: &str, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
@@ -248,7 +247,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     }
     let are_few = shown.len() <= MAX_SERIES;
     let expected = |line: &TraceSummary| line.expected.unwrap_or(MIN_RATIO);
-    let name = |line: &&TraceSummary| match (are_few, is_of_time(&line.missing[0])) {
+    let name = |line: &&TraceSummary| match (are_few, is_time_dependent(&line.missing[0])) {
         (true, _) => names::effect(&line.missing[0]),
         (_, false) => String::from("an effect of the ship or its gear"),
         (_, true) => String::from("a moment that depends on time"),
@@ -331,7 +330,7 @@ pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     all
 }
 
-fn is_of_time(id: &str) -> bool {
+fn is_time_dependent(id: &str) -> bool {
     ship::effects::all().iter().any(|effect| effect.id() == id && effect.is_time_dependent())
 }
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use campaign::earlier_trials::hulls_of;
+use campaign::earlier_trials::earlier_hulls;
 use campaign::failure::Failure;
 use campaign::identified_ship::RecordFacts;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
-use document::identified_hull::rows_of;
+use document::identified_hull::matrix_rows;
 use document::{IdentifiedShip, Warning, WarningCode};
 use identify::hull::{self, EarlierHull, PriorCheck, differs_in_froude_number};
 use predict::drawable_hull;
@@ -17,7 +17,7 @@ use trial::{Trial, file};
 
 use super::stored_ships::{StoredShips, ships_of, text_of};
 use crate::documents::prior;
-use crate::records::file_of;
+use crate::records::file_and_hash;
 
 /// Hulls of a model of earlier trials.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ impl EarlierModel {
                         approach speed of the ship and a speed column";
             Failure::in_file(shown, problem)
         })?;
-        let hulls = hulls_of(&ship).map_err(|error| Failure::in_file(shown, error))?;
+        let hulls = earlier_hulls(&ship).map_err(|error| Failure::in_file(shown, error))?;
         Ok(Self { file: shown.to_owned(), records, hulls })
     }
 
@@ -91,12 +91,12 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
 ///
 /// Fails if a record counts twice, or if models are given and no hull can be fitted to the records.
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
-    counted_once(models, trials.iter().map(file_of).map(|(file, sha256)| (sha256, file)).collect())?;
+    counted_once(models, trials.iter().map(file_and_hash).map(|(file, sha256)| (sha256, file)).collect())?;
     if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
         let problem = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
-        return Err(Failure::in_file(file_of(&trials[0]).0, format!("{problem}: {error}; {cure}")));
+        return Err(Failure::in_file(file_and_hash(&trials[0]).0, format!("{problem}: {error}; {cure}")));
     }
     Ok(trials.iter().find_map(Trial::hull).map(|ship| other_speeds(models, &ship)).unwrap_or_default())
 }
@@ -144,13 +144,13 @@ pub struct ShipAfterTrials {
 pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
-    let before_trials = hulls_of(ship).map_err(|error| Failure::in_file(shown, error))?;
+    let before_trials = earlier_hulls(ship).map_err(|error| Failure::in_file(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
     for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
         let Some((after, check)) = hull::combined(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
-        stored.covariance = rows_of(&after.covariance);
+        stored.covariance = matrix_rows(&after.covariance);
         drawable_hull::check(stored).map_err(|error| Failure::in_file(shown, error))?;
         checks.extend(check.map(|check| (hull_before.form.as_str(), check)));
     }

@@ -9,7 +9,7 @@ use ship::angle::to_deg;
 use trial::scale::compare_scales;
 use trial::{Quantity, Trial};
 
-use crate::records::file_of;
+use crate::records::file_and_hash;
 use crate::scales::RescaledRecords;
 
 /// Methods in order of preference if one represents all. The first has errors that include the uncertainty of the
@@ -36,7 +36,7 @@ pub fn compared(
         let terms = terms(joint.as_ref()?, &estimates_by_scale(method.as_ref()), first);
         Some(ComparedModel { model: entry.method.clone(), terms })
     };
-    let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
+    let files: Vec<&str> = together.trials.iter().map(|trial| file_and_hash(trial).0).collect();
     let all = || methods.par_iter().zip(answers).filter_map(compared).collect();
     (groups.len() > 1).then(|| ScalesEntry::new(&groups, &files, first, all()))
 }

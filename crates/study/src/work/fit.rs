@@ -6,8 +6,8 @@ use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry
 use document::method::{MethodEntry, Validation};
 use document::trace::PrimeIndices;
 use document::{ErrorCode, ImoFormEntry, Warning, WarningCode, WarningSource, Warnings};
-use identify::answer::entry;
 use identify::estimate::Uncertainty;
+use identify::method_entry::method_entry;
 use identify::plausibility::unusual_ship;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry, verdict};
@@ -29,7 +29,7 @@ use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
-use crate::records::{self, file_of, missing_track_warning, source_of};
+use crate::records::{self, file_and_hash, missing_track_warning, source_of};
 use crate::scales::{self, RescaledRecords};
 use campaign::curves::{angle_curve_deg, replay_curves, zigzag_figure};
 use campaign::identified_ship::{self, RecordFacts};
@@ -87,7 +87,7 @@ impl FitResult {
             angle_curve_deg(&time, &values)
         };
         FitRecord {
-            file: file_of(trial).0.to_owned(),
+            file: file_and_hash(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
             zigzag: zigzag.map(|zigzag| zigzag_figure(trial, &zigzag)),
@@ -124,7 +124,7 @@ pub fn fit(
         .par_iter()
         .progress_with(progress::bar("methods", methods.len() as u64, quiet))
         .map(|(label, method)| {
-            let (mut entry, estimate) = entry(label, method.identify(trials), trials);
+            let (mut entry, estimate) = method_entry(label, method.identify(trials), trials);
             entry.id = (method.id() != label).then(|| method.id().to_owned());
             entry.prime = entry.parameters.zip(ship).map(|(fit, ship)| PrimeIndices::new([fit.k_per_s, fit.t_s], ship));
             entry.validation = held_out.iter().map(|other| validate(other, estimate.as_ref())).collect();
@@ -142,11 +142,11 @@ pub fn fit(
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
-    warnings.extend(answers.iter().flat_map(answer_warnings));
+    warnings.extend(answers.iter().flat_map(method_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
     };
-    let (verdict, zigzags) = (verdict::from_answers(trials, &answers), RecordedZigZags::from_trials(trials));
+    let (verdict, zigzags) = (verdict::from_estimates(trials, &answers), RecordedZigZags::from_trials(trials));
     let (form, form_remarks) = form_of(trials, ship).map(|form| (form.entries, form.remarks)).unwrap_or_default();
     let document = FitDocument {
         schema: SCHEMA.into(),
@@ -172,7 +172,7 @@ pub fn fit(
 
 /// Document entry of a record; adds a warning if its first overshoot cannot be read.
 fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
-    let ((file, sha256), zigzag) = (file_of(trial), ZigZag::from_trial(trial));
+    let ((file, sha256), zigzag) = (file_and_hash(trial), ZigZag::from_trial(trial));
     warnings.extend(zigzag.as_ref().ok().and_then(|zigzag| late_begin(trial, zigzag)));
     TrialEntry {
         file: file.into(),
@@ -228,7 +228,7 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
 }
 
 /// Warnings of a method.
-fn answer_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
+fn method_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<Warning> {
     let warnings = estimate.iter().flat_map(|estimate| estimate.warnings.clone());
     WarningSource::Method(entry.method.clone()).attach_to(warnings).collect()
 }
@@ -252,7 +252,7 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
 /// Fails if no method has such a name.
 pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
     let all = registry::default_settings().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
-    let mut all = all.map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let mut all = all.map_err(|error| Failure::execution(format!("default settings: {error}")))?;
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let ids: Vec<&str> = all.iter().map(|method| method.id()).collect();
@@ -307,10 +307,10 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
     if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
         message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
     }
-    Failure::in_file(file_of(record).0, message).with_code(ErrorCode::NoAnswer)
+    Failure::in_file(file_and_hash(record).0, message).with_code(ErrorCode::NoAnswer)
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
     let replay = estimate.and_then(|estimate| replay(other, &estimate.response));
-    Validation { file: file_of(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
+    Validation { file: file_and_hash(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
 }

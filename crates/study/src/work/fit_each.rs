@@ -34,7 +34,7 @@ impl LogFit {
         let without = |error| Self { file: file.to_owned(), is_read, verdict: None, warnings: of_reader, error };
         match read.and_then(|trials| fit([&trials, &[]], methods, &[], true, warnings)) {
             Ok(fit) => Self {
-                warnings: fit.document.answer_warnings().cloned().collect(),
+                warnings: fit.document.verdict_warnings().cloned().collect(),
                 verdict: fit.document.verdict,
                 ..without(None)
             },

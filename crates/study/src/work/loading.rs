@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use campaign::earlier_trials::hulls_of;
+use campaign::earlier_trials::earlier_hulls;
 use campaign::failure::Failure;
 use document::identified_hull::IdentifiedHull;
 use document::{IdentifiedShip, WarningCode, WarningSource, Warnings};
@@ -75,7 +75,7 @@ impl DescribedLoading {
         warnings: &mut Warnings,
     ) -> Result<(IdentifiedShip, f64), Failure> {
         let mut ship = only_hull(shown, ship)?;
-        let earlier = hulls_of(&ship).map_err(|error| Failure::in_file(shown, error))?;
+        let earlier = earlier_hulls(&ship).map_err(|error| Failure::in_file(shown, error))?;
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
         self.warn_of_kept(&to, warnings);
@@ -129,7 +129,7 @@ impl DescribedLoading {
         }
         let differing = to.differing_keys(at_trials);
         let cure = match () {
-            () if !to.has_length_of(at_trials) => "length-m differs; give it at the scale of that model",
+            () if !to.has_equal_length(at_trials) => "length-m differs; give it at the scale of that model",
             () if differing.contains(&"beam-m") => "beam-m differs; give a loading of the same ship",
             () if differing.is_empty() => "all is within 2 % of it; leave --load out, or give another draught-m",
             () => return completed(&to).map_err(|error| self.out_of_the_water(&to, error)),
@@ -192,7 +192,7 @@ fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsErro
 mod tests {
     use super::*;
     use document::Warning;
-    use document::identified_hull::{IdentifiedCoefficient, by_keys};
+    use document::identified_hull::{IdentifiedCoefficient, keyed_particulars};
     use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 
     /// A tanker in ballast.
@@ -220,7 +220,7 @@ mod tests {
             form: FORM.into(),
             length_m: 320.0,
             speed_m_s: 8.0,
-            particulars: by_keys(&at_trial()),
+            particulars: keyed_particulars(&at_trial()),
             coefficients: terms.iter().map(coefficient).collect(),
             covariance: (0..terms.len()).map(|i| (0..terms.len()).map(|j| entry(i, j)).collect()).collect(),
             ..IdentifiedHull::default()

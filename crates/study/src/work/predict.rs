@@ -25,7 +25,7 @@ use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, 
 use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressStages;
-use crate::records::{file_of, rudder_logged_late, source_of};
+use crate::records::{file_and_hash, late_rudder_message, source_of};
 
 /// Methods of fit.json in order of preference; others come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -94,8 +94,8 @@ impl StoredModel {
             warnings.push(WarningCode::NotIdentified, WarningSource::File(shown.to_owned()), text);
         }
         let ship = ships.remove(&method).expect("it was found there");
-        if let Some(late) = ship.rudder_logged_late() {
-            let text = format!("{}; she is steered without it", rudder_logged_late(late));
+        if let Some(late) = ship.logged_rudder_delay() {
+            let text = format!("{}; she is steered without it", late_rudder_message(late));
             warnings.push(WarningCode::LateRudder, WarningSource::File(shown.to_owned()), text);
         }
         let ship = if calm { ship.in_calm() } else { Ok(ship) };
@@ -187,7 +187,7 @@ impl SteeredShips<'_> {
                     predictions.push(prediction);
                 }
                 // One manoeuvre that the model does not complete does not affect the others.
-                Err(error @ PredictError::Lost { .. }) => {
+                Err(error @ PredictError::TooFewCompleted { .. }) => {
                     warnings.extend([warning(format!("{error}; it is left out"))]);
                     lost = Some(error);
                 }
@@ -271,7 +271,7 @@ fn after_earlier(
 
 /// Warning that a record is in one of the models and gives no validation.
 fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> {
-    let (_, sha256) = file_of(record);
+    let (_, sha256) = file_and_hash(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
     let text = format!("{} is fitted to it; the error on it validates nothing", model.file);
     Some(Warning::new(WarningCode::Repetition, source_of(record), text))
@@ -336,8 +336,8 @@ impl ReplayedModels<'_> {
         warnings: &mut Warnings,
     ) -> Result<(RecordReplay, Option<Correction>), Failure> {
         let Self { full, ballast, loading, scale, draws } = *self;
-        let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::of_record(scale, record));
-        let file = file_of(record).0;
+        let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::from_record(scale, record));
+        let file = file_and_hash(record).0;
         let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
         let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::in_file(file, error))?;
         let Some(replayed) = replayed else {
@@ -349,7 +349,7 @@ impl ReplayedModels<'_> {
         }
         let mut correction = match correction::correct(&scaled(full)?, &replayed_with, record, loading, draws) {
             Ok(correction) => correction,
-            Err(error @ PredictError::Lost { .. }) => {
+            Err(error @ PredictError::TooFewCompleted { .. }) => {
                 let text = format!("{error}; it is not corrected to {loading}");
                 warnings.push(WarningCode::Correction, source_of(record), text);
                 return Ok((replayed, None));

@@ -75,7 +75,7 @@ pub struct RecordFiles {
 /// Fails if the trial cannot be simulated.
 pub fn records(scenario: &Scenario, task: TrialId, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
-        Failure::work(format!(
+        Failure::execution(format!(
             "trial {} of cell {} of {} cannot be made: {error}",
             task.replicate, task.cell, scenario.name
         ))

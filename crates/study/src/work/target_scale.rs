@@ -11,7 +11,7 @@ use ship::vessel::prior::HullParticulars;
 use trial::{Conditions, Trial};
 
 use crate::options::ScaleOptions;
-use crate::records::{file_of, source_of};
+use crate::records::{file_and_hash, source_of};
 
 /// Name and conditions of a sidecar.
 pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
@@ -26,7 +26,7 @@ pub struct TargetScale {
 }
 
 impl TargetScale {
-    pub fn of_trial(Particulars { length, speed }: Particulars) -> Self {
+    pub fn from_particulars(Particulars { length, speed }: Particulars) -> Self {
         Self { length, speed: Some(speed), is_asked: false }
     }
 
@@ -39,21 +39,21 @@ impl TargetScale {
             return Ok(Some(Self { length, speed: asked.speed(), is_asked: true }));
         }
         let of_sidecar = declared.and_then(|(file, conditions)| Some((file, conditions.particulars?)));
-        let of_records = records.iter().filter_map(|record| Some((file_of(record).0, record.particulars()?)));
+        let of_records = records.iter().filter_map(|record| Some((file_and_hash(record).0, record.particulars()?)));
         let mut scales = of_records.chain(of_sidecar);
         let Some((file, first)) = scales.next() else { return Ok(None) };
         match scales.find(|(_, ship)| !is_same_length(ship.length, first.length)) {
             Some((other, ship)) => Err(scale_mismatch([(file, Some(first)), (other, Some(ship))])),
-            None => Ok(Some(Self::of_trial(first))),
+            None => Ok(Some(Self::from_particulars(first))),
         }
     }
 
     /// Scale at which a record is replayed: its own, unless a ship of its length is requested. Without a requested
     /// speed it is that of equal Froude number, not that of the record, which loses speed from its first rows on.
-    pub fn of_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
+    pub fn from_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
             (Some(ship), Some(asked)) if asked.is_asked && is_same_length(ship.length, asked.length) => scale,
-            (ship, _) => ship.map(Self::of_trial).or(scale),
+            (ship, _) => ship.map(Self::from_particulars).or(scale),
         }
     }
 }
@@ -73,7 +73,7 @@ pub fn scale_mismatch([(first, of_first), (other, of_other)]: [(&str, Option<Par
 pub fn is_same_scale(a: Particulars, b: Particulars) -> bool {
     let hull_at = |Particulars { length, speed }| HullParticulars { length, speed, ..HullParticulars::default() };
     let [a, b] = [a, b].map(hull_at);
-    a.has_length_of(&b) && !differs_in_froude_number(&a, &b)
+    a.has_equal_length(&b) && !differs_in_froude_number(&a, &b)
 }
 
 /// Ship at a scale; a ship of unknown scale is assigned this scale.

@@ -20,7 +20,7 @@ use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
-use crate::records::{file_of, missing_track_warning, particulars, rudder_logged_late, unique_names};
+use crate::records::{file_and_hash, late_rudder_message, missing_track_warning, particulars, unique_names};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -107,8 +107,8 @@ pub fn trace(
     let innovations = analysis.innovations();
     let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
         name: name.clone(),
-        file: file_of(trial).0.to_owned(),
-        sha256: file_of(trial).1.to_owned(),
+        file: file_and_hash(trial).0.to_owned(),
+        sha256: file_and_hash(trial).1.to_owned(),
         held_out: number >= trials.len(),
         curves: format!("replay{}.csv", suffix(&names, number)),
         innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
@@ -122,7 +122,7 @@ pub fn trace(
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = identified_ship::from_analysis(&analysis, &shown);
-    warnings.extend(ship.rudder_logged_late().map(|late| WarningCode::LateRudder.warning(rudder_logged_late(late))));
+    warnings.extend(ship.logged_rudder_delay().map(|late| WarningCode::LateRudder.warning(late_rudder_message(late))));
     let earlier_trials = earlier_trials::entry(priors, &trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
@@ -185,10 +185,10 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
         TraceError::Base(_) | TraceError::Replay { .. } => {
             "; the record cannot be traced because no base model fits it"
         }
-        TraceError::Asked { .. } => "; leave it out of --with and --only",
+        TraceError::NoCandidate { .. } => "; leave it out of --with and --only",
         TraceError::Settings(error) => return Failure::input(error),
     };
-    Failure::in_file(file_of(first).0, format!("{error}{why}"))
+    Failure::in_file(file_and_hash(first).0, format!("{error}{why}"))
 }
 
 /// Sentence on the most informative next trial.
@@ -207,7 +207,7 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
         [] => String::from("is the most informative of the standard manoeuvres"),
         gains => format!("would {}", gains.join(" and ")),
     };
-    let limits = match best.still_alike.as_slice() {
+    let limits = match best.inseparable.as_slice() {
         [] => String::new(),
         alike => format!("; it would not separate {}", pairs(alike)),
     };

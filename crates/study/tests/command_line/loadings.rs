@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use document::identified_hull::{IdentifiedHull, by_keys};
+use document::identified_hull::{IdentifiedHull, keyed_particulars};
 use serde_json::{Value, json};
 use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, hull_prior};
@@ -70,7 +70,7 @@ fn truth(desk: &Desk) {
     let own = ship["hulls"].as_array().expect("hulls").iter().find(|own| own["form"] == "mmg").expect("it is near");
     let mut hull: IdentifiedHull = serde_json::from_value(own.clone()).expect("a hull");
     let at = particulars(9.5, 0.74);
-    hull.particulars = by_keys(&at);
+    hull.particulars = keyed_particulars(&at);
     hull.coefficients.iter_mut().zip(values(&at).1).for_each(|(own, value)| own.value = value);
     hull.covariance.iter_mut().flatten().for_each(|entry| *entry = 0.0);
     hull.moment.deviation_rudder_rad = 0.0;

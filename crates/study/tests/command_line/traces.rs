@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use ship::effects::{Effect, SecondOrder, listed_effect};
-use ship::ships::Model;
+use ship::ships::ShipModel;
 use ship::{ResponseModel, Ship, ships};
 
 use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
@@ -16,10 +16,10 @@ pub fn second_order() -> Ship {
 
 fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     let mut ship = ships::find("yukun").expect("it is in the registry");
-    let Model::Response(response) = &ship.model else { panic!("a response ship") };
+    let ShipModel::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
     parameters.extend(values);
-    ship.model = Model::Response(ResponseModel::new(vec![effect]).with_parameters(parameters));
+    ship.model = ShipModel::Response(ResponseModel::new(vec![effect]).with_parameters(parameters));
     ship
 }
 
@@ -160,8 +160,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     );
     assert_eq!(paragraphs.next(), Some("![Figure 1](staircase.png)"));
     let numbers = report.match_indices("![Figure ").map(|(at, mark)| report[at + mark.len()..].split(']').next());
-    let numbers: Vec<usize> =
-        numbers.map(|number| number.and_then(|own| own.parse().ok()).expect("a number")).collect();
+    let numbers: Vec<usize> = numbers.map(|cell| cell.and_then(|text| text.parse().ok()).expect("a cell")).collect();
     assert_eq!(numbers, (1..=numbers.len()).collect::<Vec<_>>(), "figures are numbered without gaps");
     let page = desk.text("t/report.html");
     let (shown, folded) = page.split_once("<main").and_then(|(_, main)| main.split_once("<details>")).expect("parts");

@@ -6,7 +6,7 @@
 //! likelihood estimate given f. The correlation of neighbouring rows is thus accounted for. The initial value of the
 //! walk is free, so f is determined up to a constant: the mean over the rows is zero.
 //!
-//! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
+//! The band is a Scheffé band (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
 
 use estimation::column::dot;
 use estimation::minimum::golden_section_minimum;

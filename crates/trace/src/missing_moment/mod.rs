@@ -52,12 +52,12 @@ impl MomentChannel {
     }
 }
 
-/// Replayed heading of another model minus that of the base, as an explanation of the missing moment.
+/// Explanation of a missing moment: another model, by its replayed heading relative to the base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelativeResponse {
     /// Effects of the model with their forms.
     pub effects: Vec<(&'static str, &'static str)>,
-    /// Replayed heading of the model minus that of the base at the observed rows, rad.
+    /// Replayed headings, model minus base, at the observed rows, rad.
     pub heading: Vec<f64>,
 }
 

@@ -77,7 +77,7 @@ fn integral(until: f64, value: impl Fn(f64) -> f64) -> f64 {
 fn a_known_input_acts_between_rows() {
     let truth = base();
     let record =
-        PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { noise_deg: 0.0, ..TrialPlan::default() }));
+        PreparedRecord::unaveraged(&record(&ship(Vec::new()), TrialPlan { noise_deg: 0.0, ..TrialPlan::default() }));
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let rows = MomentRows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
     let steered = rows.rudder_response(&record.rudder);
@@ -93,7 +93,7 @@ fn a_known_input_acts_between_rows() {
 fn no_moment_is_missing_from_the_true_base() {
     let (mut inside, mut all, mut shown) = (0, 0, 0);
     for seed in 1..=20 {
-        let record = PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() }));
+        let record = PreparedRecord::unaveraged(&record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() }));
         let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
         let holds = |row: &usize| missing.interval(*row)[0] <= 0.0 && 0.0 <= missing.interval(*row)[1];
         inside += (0..missing.time.len()).filter(holds).count();
@@ -126,7 +126,7 @@ fn an_unstable_base_is_smoothed_as_well() {
         });
         state = ahead.advance(state, input(order), input(next) - input(order));
     }
-    let record = PreparedRecord::whole(&of_columns(time, heading, rudder));
+    let record = PreparedRecord::unaveraged(&of_columns(time, heading, rudder));
     let missing = MissingMoment::new(&record, &unstable, from_deg(0.02), Vec::new()).expect("enough rows");
     for (row, expected) in [(300, 0.0), (600, 0.0), (900, from_deg(2.0)), (1300, from_deg(2.0))] {
         assert!((missing.moment[row] - expected).abs() < 4.0 * missing.sd[row].min(from_deg(0.3)), "{row}");
@@ -138,7 +138,7 @@ fn an_unstable_base_is_smoothed_as_well() {
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;
     let damped = ship(vec![(listed_effect("nonlinear_damping", "r³"), vec![CUBE])]);
-    let record = PreparedRecord::whole(&record(&damped, TrialPlan::default()));
+    let record = PreparedRecord::unaveraged(&record(&damped, TrialPlan::default()));
     let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
     let panel = &missing.panels[0];
     assert_eq!(
@@ -171,6 +171,6 @@ fn cubic_damping_has_its_shape() {
 
 #[test]
 fn few_rows_have_no_moment() {
-    let record = PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { rows: 20, ..TrialPlan::default() }));
+    let record = PreparedRecord::unaveraged(&record(&ship(Vec::new()), TrialPlan { rows: 20, ..TrialPlan::default() }));
     assert_eq!(MissingMoment::new(&record, &base(), 1e-3, Vec::new()), None);
 }

@@ -7,7 +7,7 @@ fn record(time: &[f64]) -> PreparedRecord {
     let channels = [(Channel::Heading, wave(0.2)), (Channel::Rudder, wave(0.1))].into();
     let origin = Origin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
     let columns = Columns { time: time.to_vec(), channels, unknown: Vec::new() };
-    PreparedRecord::whole(&Trial::new("noise", origin, columns).expect("a valid record"))
+    PreparedRecord::unaveraged(&Trial::new("noise", origin, columns).expect("a valid record"))
 }
 
 /// Covariance of the heading under a random moment and waves, summed over small steps.

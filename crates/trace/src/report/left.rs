@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 
 use super::TraceParts;
 use crate::model::TermName;
-use crate::remainder::sums_of_squares;
+use crate::residual_analysis::sums_of_squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {
@@ -27,17 +27,17 @@ impl TraceParts<'_> {
     /// Located shapes; a shape that accompanies a change of the ship is not listed separately.
     pub(super) fn located(&self) -> Vec<LocatedEntry> {
         let Some(shapes) = self.location.shapes.as_ref().filter(|all| all.is_located()) else { return Vec::new() };
-        let mut alternatives = shapes.alternatives(|only| self.span(only));
+        let mut alternatives = shapes.alternatives(|record| self.span(record));
         let displaced = self.location.displaced.iter().map(|effect| effect.term);
         alternatives.extend(displaced.map(|(id, form, _): TermName| names::effect_form(id, form)));
         let entry = |named: &NamedShape| {
-            let Candidate { shape, only, .. } = *named.candidate;
-            let span = self.span(only);
+            let Candidate { shape, record, .. } = *named.candidate;
+            let span = self.span(record);
             let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
             LocatedEntry {
                 depends_on: shape.dependence(),
                 form: shape.description(span),
-                only: self.only(only),
+                only: self.record_name(record),
                 from_s: acts.map(|[from, _]| from),
                 until_s: acts.map(|[_, until]| until),
                 nats: named.loss,
@@ -46,14 +46,14 @@ impl TraceParts<'_> {
                 formula: shape.formula().map(|formula| format!("located = {formula}")),
             }
         };
-        shapes.named_shapes(|only| self.span(only)[1]).iter().map(entry).collect()
+        shapes.named_shapes(|record| self.span(record)[1]).iter().map(entry).collect()
     }
 
     /// Start and duration (s) of a record, or of the longest record.
-    fn span(&self, only: Option<usize>) -> [f64; 2] {
+    fn span(&self, record: Option<usize>) -> [f64; 2] {
         let records = &self.problem.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));
-        let record = only.map_or_else(longest, |number| records.get(number));
+        let record = record.map_or_else(longest, |number| records.get(number));
         record.map_or([0.0; 2], |record| [record.time[0], record.duration()])
     }
 }

@@ -141,11 +141,11 @@ impl WhitenedStructure {
 
     /// Criterion −2 log p + penalties.
     pub fn criterion(&self) -> f64 {
-        self.criterion_with(&[], self.square)
+        self.criterion_after(&[], self.square)
     }
 
     /// Criterion with appended t values and the residual sum of squares after them.
-    fn criterion_with(&self, appended: &[f64], square: f64) -> f64 {
+    fn criterion_after(&self, appended: &[f64], square: f64) -> f64 {
         let variance = (square / self.freedom).max(self.min_variance);
         let penalty = |c: &f64| self.log_n.max((c * c / variance).ln_1p()) + 1.0;
         let misfit = square / variance - self.freedom;
@@ -154,8 +154,8 @@ impl WhitenedStructure {
     }
 
     /// Criterion with whitened columns appended; infinite if they are linearly dependent.
-    pub fn criterion_of(&self, columns: &[HeadingColumn]) -> f64 {
-        self.criterion_of_products(&self.products(columns))
+    pub fn criterion_with(&self, columns: &[HeadingColumn]) -> f64 {
+        self.criterion_with_products(&self.products(columns))
     }
 
     /// Residual sum of squares after appended columns.
@@ -198,9 +198,9 @@ impl WhitenedStructure {
     }
 
     /// Criterion with columns of these products appended; infinite if they are linearly dependent.
-    pub fn criterion_of_products(&self, products: &GramProducts) -> f64 {
+    pub fn criterion_with_products(&self, products: &GramProducts) -> f64 {
         let Some(Extension { solution, .. }) = self.extension(products) else { return f64::INFINITY };
-        self.criterion_with(&solution, self.square_with(&solution))
+        self.criterion_after(&solution, self.square_with(&solution))
     }
 
     /// Rows of factor and solution for appended columns; `None` if they are linearly dependent.

@@ -12,7 +12,7 @@ use super::motion::PredictedMotion;
 pub enum ShipSignal {
     /// Heading ψ.
     Heading,
-    /// Way y.
+    /// Lateral way y to starboard of the initial course.
     Way,
     /// Yaw rate r.
     YawRate,
@@ -174,11 +174,11 @@ impl Shape {
     }
 
     /// `true` if the shape depends on time, and so belongs to one record.
-    pub fn is_of_time(&self) -> bool {
+    pub fn is_time_dependent(&self) -> bool {
         self.dependence() == Dependence::Time || *self == Self::HeadingTrend
     }
 
-    /// Index of the class of similar shapes.
+    /// Class of similar shapes, as an index.
     pub fn class(&self) -> usize {
         match self {
             Self::HeadingTrend => 6,
@@ -263,7 +263,7 @@ impl Shape {
     }
 
     /// Number of continuous parameters.
-    pub fn place_count(&self) -> usize {
+    pub fn parameter_count(&self) -> usize {
         self.clone().places(1.0).len()
     }
 

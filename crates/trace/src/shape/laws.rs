@@ -48,7 +48,7 @@ impl RandomLaw {
 
     /// `true` if it includes a random moment.
     pub fn is_moment(&self) -> bool {
-        self.colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading())
+        self.colour.correlated.is_some_and(|(kind, _)| !kind.is_heading_error())
     }
 }
 

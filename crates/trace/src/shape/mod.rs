@@ -1,4 +1,4 @@
-//! Shape analysis: whether the residual of a structure is a moment of some shape, a random moment, or instrument noise.
+//! Shape analysis: test of a residual for a moment of a listed shape, a random moment, and instrument noise.
 //!
 //! A random moment can follow almost any heading, so a shape competes with every random law, and the law is
 //! re-estimated together with the shape. The gain is G = ½ (h₀ − h) nats, with the criterion h₀ of the best law without
@@ -47,7 +47,7 @@ const TIME_TOLERANCE: f64 = 0.02;
 const UNIT: f64 = 1.0 / 16.0;
 const MAX_TIME_S: f64 = 1000.0;
 
-/// Shape of a missing moment with its loss of likelihood if it is omitted and its size.
+/// Shape of a missing moment, with its size and the loss of log likelihood without it.
 #[derive(Debug, Clone)]
 pub struct NamedShape {
     /// Shape.
@@ -109,7 +109,7 @@ impl ShapeAnalysis {
         self.gain >= MIN_GAIN_NATS
     }
 
-    /// Shapes of the best with a clear loss, the clearest first; `duration` (s) is that of a record.
+    /// Shapes of the best explanation with a clear loss, the clearest first; `duration` is the length of a record, s.
     pub fn named_shapes(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
         let size = |coefficients: &Vec<f64>| coefficients.iter().map(|x| x * x).sum::<f64>().sqrt();
         let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
@@ -124,13 +124,13 @@ impl ShapeAnalysis {
         let changes: Vec<(Option<usize>, Option<f64>)> = all
             .iter()
             .filter(|named| named.candidate.shape.is_change())
-            .map(|named| (named.candidate.only, from(named)))
+            .map(|named| (named.candidate.record, from(named)))
             .collect();
         all.retain(|named| {
-            let only = named.candidate.only;
+            let record = named.candidate.record;
             let is_near = |&(other, at): &(Option<usize>, Option<f64>)| {
                 let distance = at.zip(from(named)).map(|(at, from)| (at - from).abs());
-                other == only && distance.is_some_and(|distance| distance <= MAX_DISTANCE_SHARE * duration(only))
+                other == record && distance.is_some_and(|distance| distance <= MAX_DISTANCE_SHARE * duration(record))
             };
             named.candidate.shape.is_change() || !changes.iter().any(is_near)
         });
@@ -147,7 +147,7 @@ impl ShapeAnalysis {
         for other in &self.equivalent {
             let classes = classes(other);
             if seen.iter().all(|seen| !classes.is_subset(seen) && !classes.is_superset(seen)) {
-                let shapes = other.shapes.iter().map(|shape| shape.shape.description(span(shape.only)));
+                let shapes = other.shapes.iter().map(|shape| shape.shape.description(span(shape.record)));
                 all.push(shapes.collect::<Vec<_>>().join(" and "));
                 seen.push(classes);
             }
@@ -190,7 +190,7 @@ impl<'a> ShapeProblem<'a> {
     /// Problem at a point, with motions predicted under a colour; `None` if its columns are dependent.
     fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
-        let laws = laws::all(point.theta[1].abs(), problem.longest(), spacing, law.colour.waves);
+        let laws = laws::all(point.theta[1].abs(), problem.longest_duration(), spacing, law.colour.waves);
         let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
         let whitened = |law: &RandomLaw| {
@@ -198,7 +198,7 @@ impl<'a> ShapeProblem<'a> {
             (WhitenedStructure::new(&linearised, &weights, law.freedom), weights)
         };
         let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
-        let (criterion, law) = search::best_of_laws(&structure)?;
+        let (criterion, law) = search::best_law(&structure)?;
         Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 
@@ -211,7 +211,7 @@ impl<'a> ShapeProblem<'a> {
 
     /// Searches the shapes and summarises the best explanation.
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
-        let longest = problem.longest();
+        let longest = problem.longest_duration();
         let smooth = law.colour.waves.is_none().then(|| laws::smooth_moments(self.point.theta[1].abs(), longest));
         let smooth = smooth.unwrap_or_default();
         let smooth = smooth.par_iter().map(|law| self.criterion_under(law)).reduce(|| f64::INFINITY, f64::min);
@@ -234,7 +234,7 @@ impl<'a> ShapeProblem<'a> {
             other.shapes.len() <= best.shapes.len()
                 && power * (other.criterion - best.criterion) < 2.0 * MAX_EQUIVALENT_GAIN_NATS
         });
-        let whole = search.whole(&best)?;
+        let whole = search.with_shapes(&best)?;
         let step = whole.gauss_newton_step();
         Some(ShapeAnalysis {
             losses: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),

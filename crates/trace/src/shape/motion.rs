@@ -173,7 +173,7 @@ mod tests {
         let is_lost = |row: usize| (20..25).contains(&row);
         let read = |(row, psi): (usize, &f64)| if is_lost(row) { f64::NAN } else { *psi };
         let heading = clean.heading().iter().enumerate().map(read).collect();
-        let record = PreparedRecord::whole(&of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec()));
+        let record = PreparedRecord::unaveraged(&of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec()));
         let at = |row: usize| interpolated(&record, row, |observed| record.observed[observed] as f64);
         assert_eq!([0, 19, 25].map(at), [0.0, 19.0, 25.0]);
         (20..25).for_each(|row| assert!((at(row) - row as f64).abs() < 1e-9, "{row}: {}", at(row)));

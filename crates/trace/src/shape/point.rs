@@ -32,7 +32,7 @@ impl<'a> StructurePoint<'a> {
     pub fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &NoiseLaw) -> Self {
         let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
         let sd = law.variance.iter().map(|variance| variance.sqrt()).collect();
-        Self { problem, fit, sd, noise: problem.noise_of(theta[0]), theta, initial }
+        Self { problem, fit, sd, noise: problem.noise_transitions(theta[0]), theta, initial }
     }
 
     /// Whitening weights under a colour.
@@ -45,7 +45,7 @@ impl<'a> StructurePoint<'a> {
     pub fn motions(&self, colour: &NoiseColour) -> Vec<PredictedMotion<'a>> {
         let structure = &self.fit.structure;
         let residual = self.problem.residual(structure, &self.theta, &self.initial);
-        let is_of_moment = colour.correlated.is_some_and(|(kind, _)| !kind.is_of_heading());
+        let is_of_moment = colour.correlated.is_some_and(|(kind, _)| !kind.is_heading_error());
         let motion = |number: usize| {
             let (record, initial) = (&self.problem.records[number], self.initial[number]);
             let predicted =
@@ -136,7 +136,7 @@ impl<'a> StructurePoint<'a> {
         for (number, initial) in next.initial.iter_mut().enumerate() {
             initial.iter_mut().zip(&step[of_base + 2 * number..]).for_each(|(state, by)| *state += by);
         }
-        next.noise = self.problem.noise_of(next.theta[0]);
+        next.noise = self.problem.noise_transitions(next.theta[0]);
         next
     }
 }

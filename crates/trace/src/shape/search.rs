@@ -34,8 +34,8 @@ const CHUNK: usize = 8;
 pub struct Candidate {
     /// Shape.
     pub shape: Shape,
-    /// Index of the one record in which it acts; `None` for all.
-    pub only: Option<usize>,
+    /// Index of the record in which the shape acts; `None` for all records.
+    pub record: Option<usize>,
     /// Penalty of the choice among places, forms and classes.
     pub penalty: f64,
     columns: Vec<HeadingColumn>,
@@ -71,8 +71,8 @@ const MIN_RMS: f64 = 1e-12;
 
 impl ShapeSearch<'_> {
     /// Candidate in all records, or in one; `None` if its moment is zero there.
-    fn candidate(&self, shape: Shape, only: Option<usize>, penalty: f64) -> Option<Candidate> {
-        let acting = || self.motions.iter().filter(|motion| only.is_none_or(|only| only == motion.number));
+    fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<Candidate> {
+        let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.number));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
             acting().map(|motion| (motion, shape.moments(motion))).collect();
         let column = |k: usize| -> Option<HeadingColumn> {
@@ -86,7 +86,7 @@ impl ShapeSearch<'_> {
             (size.is_finite() && size > MIN_RMS).then(|| moments.iter().map(response).collect())
         };
         let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<HeadingColumn>>>()?;
-        Some(Candidate { shape, only, penalty, columns })
+        Some(Candidate { shape, record, penalty, columns })
     }
 
     /// Candidates of all shapes; `unit` (s) is the time unit of the lags.
@@ -100,21 +100,21 @@ impl ShapeSearch<'_> {
         let records = self.motions.len();
         let penalty = |shape: &Shape, places: usize, all: &[(Shape, usize)]| {
             let choices = if places > 1 { places } else { forms(shape.class(), all) };
-            let records = if shape.is_of_time() { records } else { 1 };
+            let records = if shape.is_time_dependent() { records } else { 1 };
             2.0 * ((choices * records) as f64).ln() + 2.0 * CLASSES.ln()
         };
         let of_ship = all(longest);
         let mut requested: Vec<(Shape, Option<usize>, f64)> = Vec::new();
-        for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_of_time()) {
+        for (shape, places) in of_ship.iter().filter(|(shape, _)| !shape.is_time_dependent()) {
             requested.push((*shape, None, penalty(shape, *places, &of_ship)));
         }
         for motion in self.motions {
             let of_record = all(motion);
-            for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_of_time()) {
+            for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_time_dependent()) {
                 requested.push((*shape, Some(motion.number), penalty(shape, *places, &of_record)));
             }
         }
-        let candidate = |(shape, only, penalty)| self.candidate(shape, only, penalty).map(Arc::new);
+        let candidate = |(shape, record, penalty)| self.candidate(shape, record, penalty).map(Arc::new);
         requested.into_par_iter().filter_map(candidate).collect()
     }
 
@@ -145,7 +145,7 @@ impl ShapeSearch<'_> {
     fn best_law(&self, structures: &[Option<WhitenedStructure>], shapes: &[&Candidate]) -> (f64, usize) {
         let penalty: f64 = shapes.iter().map(|shape| shape.penalty).sum();
         let criterion = |(law, structure): (usize, &Option<WhitenedStructure>)| {
-            let criterion = structure.as_ref()?.criterion_of(&self.white(law, shapes).concat());
+            let criterion = structure.as_ref()?.criterion_with(&self.white(law, shapes).concat());
             Some((criterion + penalty, law))
         };
         structures.par_iter().enumerate().filter_map(criterion).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or(NONE)
@@ -186,7 +186,7 @@ impl ShapeSearch<'_> {
                     cross.extend(weighted.iter().map(|other| product(column, other)));
                 }
                 let structure = structures[law].as_ref();
-                lowest = lowest.min(structure.map_or(f64::INFINITY, |s| s.criterion_of_products(products)));
+                lowest = lowest.min(structure.map_or(f64::INFINITY, |s| s.criterion_with_products(products)));
             }
             lowest + candidate.penalty
         };
@@ -203,7 +203,7 @@ impl ShapeSearch<'_> {
         columns
     }
 
-    /// Finalists of a scan: the best candidates, and the best of some classes.
+    /// Finalists of a scan: the best candidates, and the best candidate of several classes.
     fn finalists(&self, criteria: &[f64], library: &[Arc<Candidate>]) -> Vec<Arc<Candidate>> {
         let mut order: Vec<usize> = (0..library.len()).filter(|&place| criteria[place].is_finite()).collect();
         order.sort_by(|&a, &b| criteria[a].total_cmp(&criteria[b]));
@@ -224,7 +224,7 @@ impl ShapeSearch<'_> {
     /// Best explanation with the criteria without each shape, and all explanations that were tried.
     pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
         let library = self.library(unit);
-        let (criterion, law) = best_of_laws(self.structure).unwrap_or(NONE);
+        let (criterion, law) = best_law(self.structure).unwrap_or(NONE);
         let laws = screening_laws(self.laws, law);
         let mut current = Explanation { shapes: Vec::new(), criterion, law };
         let mut all = vec![current.clone()];
@@ -274,11 +274,8 @@ impl ShapeSearch<'_> {
     /// Explanation by some shapes under their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (criterion, law) = if all.is_empty() {
-            best_of_laws(self.structure).unwrap_or(NONE)
-        } else {
-            self.best_law(self.structure, &all)
-        };
+        let (criterion, law) =
+            if all.is_empty() { best_law(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
         Explanation { shapes, criterion, law }
     }
 
@@ -289,19 +286,19 @@ impl ShapeSearch<'_> {
         let mut shapes = from.shapes.clone();
         let white = |shape: &Candidate| self.white(from.law, &[shape]).concat();
         let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|shape| white(shape)).collect();
-        let mut lowest = structure.criterion_of(&columns.concat());
+        let mut lowest = structure.criterion_with(&columns.concat());
         let mut has_moved = false;
         for scale in [1.0, 0.5, 0.25] {
             for number in 0..shapes.len() {
-                for (place, sign) in (0..shapes[number].shape.place_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
+                for (place, sign) in (0..shapes[number].shape.parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
                     for _ in 0..3 {
-                        let Candidate { shape, only, penalty, .. } = *shapes[number];
-                        let motion = &self.motions[only.unwrap_or(0)];
+                        let Candidate { shape, record, penalty, .. } = *shapes[number];
+                        let motion = &self.motions[record.unwrap_or(0)];
                         let extent = [motion.span()[1], motion.record.spacing];
                         let moved = shape.moved(place, sign * scale, extent);
-                        let Some(next) = moved.and_then(|shape| self.candidate(shape, only, penalty)) else { break };
+                        let Some(next) = moved.and_then(|shape| self.candidate(shape, record, penalty)) else { break };
                         let before = std::mem::replace(&mut columns[number], white(&next));
-                        let criterion = structure.criterion_of(&columns.concat());
+                        let criterion = structure.criterion_with(&columns.concat());
                         if criterion >= lowest - 1e-6 {
                             columns[number] = before;
                             break;
@@ -315,8 +312,8 @@ impl ShapeSearch<'_> {
         has_moved.then(|| self.explained(shapes))
     }
 
-    /// Structure with the shapes of an explanation appended, under its law.
-    pub fn whole(&self, all: &Explanation) -> Option<WhitenedStructure> {
+    /// Whitened structure with the shapes of an explanation appended, under its law.
+    pub fn with_shapes(&self, all: &Explanation) -> Option<WhitenedStructure> {
         let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
         self.structure[all.law].as_ref()?.extended(&self.white(all.law, &shapes).concat())
     }
@@ -348,7 +345,7 @@ pub fn residual_sum_of_squares(linear: &Linearisation, shapes: &[Arc<Candidate>]
 const NONE: (f64, usize) = (f64::INFINITY, 0);
 
 /// Criterion and index of the best law of structures; `None` if all are `None`.
-pub fn best_of_laws(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
+pub fn best_law(structures: &[Option<WhitenedStructure>]) -> Option<(f64, usize)> {
     let criteria = structures.iter().enumerate().filter_map(|(law, s)| Some((s.as_ref()?.criterion(), law)));
     criteria.min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -59,7 +59,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
 /// Clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
     let named = analysis.named_shapes(|_| 300.0);
-    named.first().map(|named| (named.candidate.shape, named.candidate.only)).expect("a shape")
+    named.first().map(|named| (named.candidate.shape, named.candidate.record)).expect("a shape")
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn shapes_of_time_belong_to_their_record() {
     let trials = [in_moment(7, |_| 0.0), in_moment(8, |t| if t > 120.0 { 1.5 } else { 0.0 })];
     let analysis = analysed(&trials);
     let (shape, only) = clearest(&analysis);
-    assert_eq!((only, shape.is_of_time()), (Some(1), true), "{shape:?}");
+    assert_eq!((only, shape.is_time_dependent()), (Some(1), true), "{shape:?}");
 }
 
 /// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) + penalties, and with one more column.
@@ -141,7 +141,7 @@ fn criteria_are_those_of_dense_matrices() {
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
-    let noise = RecordNoise::new(&PreparedRecord::whole(&made), 0.1, 40.0, 1);
+    let noise = RecordNoise::new(&PreparedRecord::unaveraged(&made), 0.1, 40.0, 1);
     let weights = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
     let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
     let dense = |count: usize| {
@@ -170,10 +170,10 @@ fn criteria_are_those_of_dense_matrices() {
     let mut white = vec![vec![(0, columns[3].clone())]];
     white[0][0].1.iter_mut().for_each(|x| *x *= 10.0);
     let with = whitened.extended(&white).expect("independent");
-    assert!((whitened.criterion_of(&white) - dense(4)).abs() < 1e-8 && (with.criterion() - dense(4)).abs() < 1e-8);
+    assert!((whitened.criterion_with(&white) - dense(4)).abs() < 1e-8 && (with.criterion() - dense(4)).abs() < 1e-8);
     assert!(
         (with.gauss_newton_step()[3] - 0.01).abs() < 0.01
-            && whitened.criterion_of(&[vec![(0, vec![0.0; rows])]]).is_infinite()
+            && whitened.criterion_with(&[vec![(0, vec![0.0; rows])]]).is_infinite()
     );
     let left = with.innovations();
     assert!((dot(&left[0], &left[0]) - freedom).abs() < 1e-8);
@@ -207,7 +207,7 @@ fn shapes_can_be_moved_and_typed() {
         if let Some(formula) = shape.formula() {
             assert!(Formula::parse(&format!("located = {formula}")).is_ok(), "{formula}");
         }
-        for place in 0..shape.place_count() {
+        for place in 0..shape.parameter_count() {
             let back = shape.moved(place, 1.0, [300.0, 1.0]).and_then(|moved| moved.moved(place, -1.0, [300.0, 1.0]));
             let text = |shape: &Shape| shape.description([0.0, 300.0]);
             assert!(back.is_some_and(|back| text(&back) == text(shape)), "{shape:?}");

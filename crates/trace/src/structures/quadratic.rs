@@ -19,7 +19,7 @@ const MAX_ADDITIONS: usize = 2;
 /// Evidence for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TermEvidence {
-    /// Log evidence of the best structure with the candidate minus that of the best without it.
+    /// Log evidence ratio of the best structure with the candidate to the best structure without it.
     pub gain: f64,
     /// p value (χ²) of the coefficients with all other candidates present.
     pub p_value: f64,

@@ -31,7 +31,7 @@ pub struct Structures {
     /// Visibility of every candidate: expected squared coefficient over its variance with all other candidates present;
     /// a candidate of small visibility is unobservable.
     pub visibility: BTreeMap<TermName, f64>,
-    /// Evidence for every candidate.
+    /// Evidence for every candidate term.
     pub support: BTreeMap<TermName, TermEvidence>,
     /// Structures under other noise laws: weight, names of the terms.
     pub(super) rivals: Vec<(f64, Vec<TermName>)>,
@@ -76,12 +76,12 @@ impl Structures {
     }
 
     /// Probability of an effect in any form, in all records or in one.
-    pub fn probability_of(&self, id: &str, only: Option<usize>) -> f64 {
-        self.probability_of_any(|name| name.0 == id && name.2 == only)
+    pub fn effect_probability(&self, id: &str, record: Option<usize>) -> f64 {
+        self.inclusion_probability(|name| name.0 == id && name.2 == record)
     }
 
     /// Mean square residual of the most probable structure without moments of time, rad²; infinite if there is none.
-    pub fn mean_square_of_ship(&self) -> f64 {
+    pub fn ship_mean_square(&self) -> f64 {
         let is_ship =
             |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_time_dependent());
         let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
@@ -89,13 +89,13 @@ impl Structures {
         if rows > 0.0 { sum / rows } else { f64::INFINITY }
     }
 
-    /// Support of the best form of an effect.
-    pub fn support_of(&self, id: &str, only: Option<usize>) -> TermEvidence {
-        let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == only).map(|(_, form)| *form);
+    /// Evidence for the best form of an effect.
+    pub fn effect_evidence(&self, id: &str, record: Option<usize>) -> TermEvidence {
+        let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == record).map(|(_, form)| *form);
         let none = TermEvidence { gain: 0.0, p_value: 1.0 };
         let mut best = forms.max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap_or(none);
         // The refitted structures are more accurate than the quadratic approximation.
-        let probability = self.probability_of(id, only).clamp(1e-12, 1.0 - 1e-12);
+        let probability = self.effect_probability(id, record).clamp(1e-12, 1.0 - 1e-12);
         if probability > 0.5 {
             best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PRIOR_PROBABILITY.ln());
         }
@@ -104,13 +104,13 @@ impl Structures {
     }
 
     /// Probability that at least one of the terms selected by `matches` is present.
-    pub fn probability_of_any(&self, matches: impl Fn(&TermName) -> bool) -> f64 {
+    pub fn inclusion_probability(&self, matches: impl Fn(&TermName) -> bool) -> f64 {
         let present = self.weighed_names().filter(|(_, names)| names.iter().any(&matches));
         present.map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
 
-    /// [`probability_of_any`](Self::probability_of_any) with the prior odds of every term that `is_weighed` multiplied
-    /// by a factor: the weight of a structure changes by the factor for each such term. Only fitted structures count.
+    /// [`inclusion_probability`](Self::inclusion_probability) with the prior odds of `is_weighed` terms multiplied by
+    /// a factor: the weight of a structure changes by the factor for each such term. Only fitted structures count.
     pub fn probability_with_odds(
         &self,
         factor: f64,
@@ -164,7 +164,7 @@ mod tests {
         }
         near(with(&alone, 10.0, Some(DAMPING)), 0.3);
         let both = structures(&[(0.5, &[]), (0.2, &[DAMPING]), (0.2, &[LAG]), (0.1, &[DAMPING, LAG])]);
-        near(with(&both, 1.0, None), both.probability_of(DAMPING.0, None));
+        near(with(&both, 1.0, None), both.effect_probability(DAMPING.0, None));
         near(with(&both, 10.0, None), 12.0 / 14.5);
         near(with(&both, 10.0, Some(LAG)), 3.0 / 3.7);
         near(with(&structures(&[]), 10.0, None), 0.0);

@@ -109,7 +109,7 @@ fn a_clock_finds_its_times() {
     let mut stamps = StampConverter::default();
     stamps.seconds(Stamp::parse("2026-11-20 23:00:00").expect("a stamp")).expect("it has a time");
     let clock = stamps.clock().expect("a stamp was read");
-    let at = |text| clock.time_of(&Stamp::parse(text).expect(text));
+    let at = |text| clock.record_time(&Stamp::parse(text).expect(text));
     assert_eq!(at("23:10"), Some(600.0));
     assert_eq!(at("00:10:00"), Some(4200.0));
     assert_eq!(at("2026-11-21T00:10:00"), Some(4200.0));

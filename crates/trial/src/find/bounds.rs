@@ -51,13 +51,13 @@ pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<Det
             Manoeuvre::PullOut { .. } => (pattern.first(), None),
             _ => {
                 let start = first_execute(record, &pattern.holds, pattern.scale, free);
-                (start, Some(ApproachSegment::of(record, pattern, start, free)))
+                (start, Some(ApproachSegment::from_pattern(record, pattern, start, free)))
             }
         };
         let first = approach.as_ref().map_or(start, |segment| segment.first);
         let last = last.max(start);
         let executes = pattern.holds.iter().filter(|hold| hold.first <= last).count();
-        let mut quality = Quality::of(record, first, last);
+        let mut quality = Quality::from_rows(record, first, last);
         quality.rudder_spread = spread(pattern);
         if let Some(segment) = approach {
             quality.approach = Some(segment.approach);
@@ -100,7 +100,7 @@ fn before_stop(record: &PreparedLog, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first of some holds. The search begins at row `free` and `scale`
+/// First row in which the rudder moves into the first of the holds. The search begins at row `free` and `scale`
 /// seconds before the hold or, if the rudder is slow, somewhat earlier.
 pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
@@ -162,7 +162,7 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
-/// First row of the movement into the only hold of a manoeuvre, whose rate is not known from other movements; `None` if
+/// First row of the movement into the only hold of a manoeuvre, whose rate no other movement gives; `None` if
 /// the record does not contain the movement.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
@@ -193,7 +193,7 @@ struct ApproachSegment {
 }
 
 impl ApproachSegment {
-    fn of(record: &PreparedLog, pattern: &Pattern, start: usize, free: usize) -> Self {
+    fn from_pattern(record: &PreparedLog, pattern: &Pattern, start: usize, free: usize) -> Self {
         let time = record.log.time;
         let earliest = time.partition_point(|&t| t < time[start] - pattern.scale).max(free).min(start);
         let speed_change = change(record.log.speed, earliest, start);

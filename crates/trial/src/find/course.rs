@@ -16,7 +16,7 @@ pub(crate) struct HeadingReadings {
 }
 
 impl HeadingReadings {
-    pub fn of(time: &[f64], heading: &[f64]) -> Self {
+    pub fn from_columns(time: &[f64], heading: &[f64]) -> Self {
         let read = time.iter().zip(heading).filter(|(_, psi)| psi.is_finite());
         let (time, heading) = read.map(|(&t, &psi)| (t, psi)).unzip();
         Self { time, heading }

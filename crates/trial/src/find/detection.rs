@@ -51,7 +51,7 @@ pub struct Quality {
 
 impl Quality {
     /// Quality of the rows of a part, without its approach and holds.
-    pub(crate) fn of(record: &PreparedLog, first: usize, last: usize) -> Self {
+    pub(crate) fn from_rows(record: &PreparedLog, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
         let (mut read, mut missing) = (time[0], 0);
@@ -122,7 +122,7 @@ impl DetectedManoeuvre {
         }
     }
 
-    /// Nominal rudder and change of heading, rad, positive to starboard; those of a zig-zag have no sign.
+    /// Nominal rudder and change of heading, rad, positive to starboard; without a sign for a zig-zag.
     pub fn angles(&self) -> [Option<f64>; 2] {
         let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
         let (rudder, sign) = (manoeuvre.max_rudder(), manoeuvre.first_side().sign());

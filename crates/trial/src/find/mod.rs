@@ -9,7 +9,7 @@
 //! holds of each manoeuvre. Positive rudder turns the ship to starboard; in a log with the opposite sign only straight
 //! pieces are detected.
 //!
-//! The manoeuvres are those of ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
+//! Source of the manoeuvres: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 mod bounds;
 mod course;
@@ -38,8 +38,8 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
-    let course = HeadingReadings::of(log.time, log.heading);
-    let rudder = RudderHolds::of(log.time, log.rudder);
+    let course = HeadingReadings::from_columns(log.time, log.heading);
+    let rudder = RudderHolds::from_signal(log.time, log.rudder);
     let record = PreparedLog { log, rudder: &rudder, course: &course };
     let mut patterns = spirals::spirals(&record);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();

@@ -60,7 +60,7 @@ impl Hold {
         self.until - self.from
     }
 
-    /// Union of two holds with the rows between them; the level is that of the longer hold.
+    /// Union of two holds with the rows between them; with the level of the longer hold.
     pub fn joined(self, later: Self) -> Self {
         let level = if later.duration() > self.duration() { later.level } else { self.level };
         Self { last: later.last, until: later.until, level, ..self }
@@ -88,7 +88,7 @@ pub(crate) struct RudderHolds {
 
 impl RudderHolds {
     /// Holds of a rudder (rad) over time (s); empty for a log of less than three rows.
-    pub fn of(time: &[f64], rudder: &[f64]) -> Self {
+    pub fn from_signal(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
         let step = finite_median(time.windows(2).map(|pair| pair[1] - pair[0]));
         // Second differences respond to noise and not to steady movement; for white noise their variance is six times
@@ -250,7 +250,7 @@ mod tests {
         let time: Vec<f64> = (0..degrees.len()).map(|row| row as f64).collect();
         for sign in [1.0, -1.0] {
             let rudder: Vec<f64> = degrees.iter().map(|x| sign * from_deg(*x)).collect();
-            let rudder_holds = RudderHolds::of(&time, &rudder);
+            let rudder_holds = RudderHolds::from_signal(&time, &rudder);
             let holds: Vec<(usize, usize)> = rudder_holds.merged.iter().map(|hold| (hold.first, hold.last)).collect();
             assert_eq!(holds, rows);
             assert_eq!(rudder_holds.merged[2].level, -sign * from_deg(20.0));

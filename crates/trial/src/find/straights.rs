@@ -115,7 +115,7 @@ impl Piece {
             until,
             start: from,
             executes: 0,
-            quality: Quality::of(record, self.first, self.last),
+            quality: Quality::from_rows(record, self.first, self.last),
         })
     }
 }

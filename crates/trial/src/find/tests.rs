@@ -197,7 +197,8 @@ fn all_kinds_are_told_apart() {
     list.dedup_by(|piece, before| piece.manoeuvre.is_none() && before.manoeuvre.is_none());
     let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, expected);
-    let rudder_deg = |place: usize| list[place].manoeuvre.as_ref().map(|own| to_deg(own.max_rudder()).round());
+    let rudder_deg =
+        |place: usize| list[place].manoeuvre.as_ref().map(|manoeuvre| to_deg(manoeuvre.max_rudder()).round());
     assert_eq!((rudder_deg(8), list[8].executes, rudder_deg(4)), (Some(15.0), 13, Some(35.0)));
 }
 

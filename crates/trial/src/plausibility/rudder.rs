@@ -15,7 +15,7 @@ const MAX_RUDDER_RATE_DEG_S: f64 = 10.0;
 /// Minimum length of a stroke of the steering gear, deg; shorter movements are corrections.
 const MIN_STROKE_DEG: f64 = 8.0;
 
-/// Rates of steering gears, from a slow gear to that of a small model, deg/s; other rates are a fault of the clock.
+/// Rates of steering gears, from a slow gear to a small model, deg/s; other rates are a fault of the clock.
 const RUDDER_RATES_DEG_S: std::ops::RangeInclusive<f64> = 0.3..=100.0;
 
 /// Minimum share of steps among the strokes of an order.
@@ -168,8 +168,7 @@ fn clock_of_rudder(strokes: &[RudderStroke]) -> Option<Warning> {
 fn feedback(trial: &Trial, order: &[f64]) -> Option<Warning> {
     let rudder = trial.rudder();
     let rests = |values: &[f64], row: usize| (row.saturating_sub(4)..=row).all(|k| values[k] == values[row]);
-    let settled =
-        (4..trial.len()).filter(|&row| rests(order, row) && to_deg((rudder[row] - rudder[row - 4]).abs()) < 0.2);
+    let settled = (4..trial.len()).filter(|&k| rests(order, k) && to_deg((rudder[k] - rudder[k - 4]).abs()) < 0.2);
     let (mut cross, mut square, mut rows) = (0.0, 0.0, 0);
     for row in settled.filter(|&row| to_deg(order[row].abs()) > 2.0) {
         cross += rudder[row] * order[row];

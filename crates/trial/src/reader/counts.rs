@@ -8,7 +8,7 @@ use super::error::Problem;
 use super::layout::{Content, RawColumn};
 use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
-use crate::cleaning::{IMPOSSIBLE_RUDDER, MAX_IMPOSSIBLE_SHARE};
+use crate::cleaning::{MAX_IMPOSSIBLE_SHARE, MIN_IMPOSSIBLE_RUDDER_RAD};
 use crate::plausibility::{extremes, range, reversals};
 use crate::wording::shortened;
 
@@ -65,7 +65,7 @@ pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Pro
 /// Kind of the numbers of a rudder; `None` for degrees.
 fn rudder_numbers(rudder: &RawColumn) -> Option<Numbers> {
     let read: Vec<f64> = rudder.values.iter().copied().filter(|value| value.is_finite()).collect();
-    let wild = read.iter().filter(|value| value.abs() > IMPOSSIBLE_RUDDER).count();
+    let wild = read.iter().filter(|value| value.abs() > MIN_IMPOSSIBLE_RUDDER_RAD).count();
     let is_few = wild as f64 <= MAX_IMPOSSIBLE_SHARE * read.len() as f64;
     let (low, high) = extremes(read.iter().copied().map(f64::to_degrees));
     // A rudder from 0 to 360 is converted later, in the cleaning.
@@ -119,8 +119,7 @@ pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     };
     let sides: Vec<usize> = (0..columns.len()).filter(|&index| is_side(&columns[index])).collect();
     let [side] = sides[..] else { return None };
-    let is_rudder =
-        |column: &RawColumn| matches!(column.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
+    let is_rudder = |raw: &RawColumn| matches!(raw.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
     let rudder = columns.iter().position(is_rudder)?;
     if !columns[rudder].values.iter().all(|value| value.is_nan() || *value >= 0.0) {
         return None;

@@ -7,7 +7,7 @@ use flate2::read::MultiGzDecoder;
 
 use super::columnar::BinaryFormat;
 use super::error::Problem;
-use super::limits::RECORD;
+use super::limits::RECORD_FILE;
 use super::lines::{HashingReader, RunningHash};
 use super::messages::{self, MessageFormat};
 use super::nmea;
@@ -52,7 +52,7 @@ pub(super) fn stem(path: &Path) -> String {
 
 /// Opens a file and recognises its content; with its size in bytes if that is the length of its text.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
-    let file = file::open(path, RECORD)?;
+    let file = file::open(path, RECORD_FILE)?;
     let (size, content) = (file.size, detect_content(Box::new(file))?);
     let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
     let size = size.filter(|_| text.on_disk.is_none());
@@ -75,7 +75,7 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a
     if first.starts_with(&[0x1f, 0x8b]) {
         let (hashed, hash) = HashingReader::new(bytes);
         on_disk = Some(hash);
-        let unpacked = LimitedReader::new(Box::new(MultiGzDecoder::new(hashed)), RECORD, None);
+        let unpacked = LimitedReader::new(Box::new(MultiGzDecoder::new(hashed)), RECORD_FILE, None);
         (first, bytes) = peek(Box::new(unpacked))?;
     }
     let refused = |format, cure| Err(Problem::Format { format, cure });

@@ -12,7 +12,7 @@ pub const MAX_ROWS: usize = 20_000_000;
 pub const MAX_CELLS: usize = 50_000_000;
 
 /// Kind of file of a record; its maximum size is 20 characters for each of [`MAX_CELLS`].
-pub const RECORD: FileKind = FileKind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
+pub const RECORD_FILE: FileKind = FileKind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
 
 /// Problem of a table without rows after a line.
 pub(super) fn no_rows_problem(line: usize) -> Problem {

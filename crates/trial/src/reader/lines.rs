@@ -12,17 +12,17 @@ use crate::encoding::{Encoding, windows_1252};
 /// Maximum length of a line of a table, bytes.
 pub const MAX_LINE_BYTES: usize = 1 << 20;
 
-/// SHA-256 of the bytes read so far.
+/// SHA-256 of the bytes read so far, shared with the reader that updates it.
 #[derive(Clone, Default)]
 pub struct RunningHash(Rc<RefCell<Sha256>>);
 
 impl RunningHash {
-    /// Hash of some bytes.
+    /// SHA-256 state that already contains `bytes`, for a file held in memory.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
     }
 
-    /// Hash, hexadecimal; after the last byte that of the file.
+    /// SHA-256 of the bytes so far, 64 hexadecimal digits; after the last byte it identifies the file.
     pub fn finish(self) -> String {
         format!("{:x}", self.0.take().finalize())
     }

@@ -27,7 +27,7 @@ use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
 
-/// Record with the warnings of the reader.
+/// Record read from a file, with the warnings of the reader.
 #[derive(Debug, Clone)]
 pub struct ReadRecord {
     /// Record.
@@ -45,7 +45,7 @@ impl Log {
         if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
             return Err(ReadError::table(path, Problem::IsSidecar));
         }
-        let mut log = Self::of_file(path, sidecar, joined.is_empty())?;
+        let mut log = Self::from_file(path, sidecar, joined.is_empty())?;
         for file in joined {
             log.join(file)?;
         }
@@ -67,18 +67,18 @@ impl Log {
         sidecar: Option<&Sidecar>,
     ) -> Result<Self, ReadError> {
         let content = input::detect_content(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
-        Self::of_content(path, content, size, sidecar.cloned(), true)
+        Self::from_content(path, content, size, sidecar.cloned(), true)
     }
 
     /// Reads a file; a `whole` record requires rudder and heading.
-    fn of_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
+    fn from_file(path: &Path, sidecar: Option<&Path>, whole: bool) -> Result<Self, ReadError> {
         let sidecar = sidecar.map(Sidecar::load).transpose()?;
         let name = display_path(path);
         let (content, size) = input::open(path).map_err(|problem| ReadError::table(name, problem))?;
-        Self::of_content(name, content, size, sidecar, whole)
+        Self::from_content(name, content, size, sidecar, whole)
     }
 
-    fn of_content(
+    fn from_content(
         path: &Path,
         content: Content,
         size: Option<u64>,
@@ -123,7 +123,7 @@ impl Log {
 
     /// Adds the channels of another file.
     fn join(&mut self, file: &Path) -> Result<(), ReadError> {
-        let mut joined = Self::of_file(file, Sidecar::existing_beside(file).as_deref(), false)?;
+        let mut joined = Self::from_file(file, Sidecar::existing_beside(file).as_deref(), false)?;
         let offset = match (&self.clock, &joined.clock) {
             (Some(first), Some(second)) => offset(first, second),
             (None, None) => 0.0,
@@ -256,7 +256,7 @@ impl Log {
         let origin = Origin::Measured { file: path.display().to_string(), sha256 };
         let mut trial = Trial::new(input::stem(&path), origin, columns).map_err(|error| {
             fault(match error {
-                TrialError::TooShort { needed, found } => Problem::TooShort { needed, usable: found, rows },
+                TrialError::TooShort { needed, rows: usable } => Problem::TooShort { needed, usable, rows },
                 error => Problem::Record(error),
             })
         })?;
@@ -286,7 +286,7 @@ impl Log {
     }
 }
 
-/// Seconds from the times of the second clock to those of the first.
+/// Offset of the second clock from the first, s.
 fn offset(first: &Clock, second: &Clock) -> f64 {
     let zone = first.zone.zip(second.zone).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
     let seconds = second.second - first.second + zone;
@@ -314,7 +314,7 @@ fn of_series(
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
-/// Log of channels with their own instants, each cleaned separately, in the part declared by the sidecar.
+/// Log of channels at separate instants, each cleaned separately, in the part declared by the sidecar.
 fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
@@ -344,8 +344,8 @@ pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
 
 /// Reads the trial at `path` with the sidecar at `sidecar`; `None` uses the header only.
 ///
-/// Fails with [`ReadError`] if the file is absent, larger than [`RECORD`](super::RECORD) or of an unknown format,
-/// if a required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
+/// Fails with [`ReadError`] if the file is absent, larger than [`super::RECORD_FILE`] or of an unknown format, if a
+/// required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
 /// or more than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible
 /// ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {

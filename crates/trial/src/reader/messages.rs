@@ -46,7 +46,7 @@ pub(super) fn format<'a>(lines: impl Iterator<Item = &'a str> + Clone) -> Option
     if lines.clone().any(canboat::is_message) {
         return Some(MessageFormat::Canboat);
     }
-    lines.map(str::trim).find(|line| !line.is_empty()).and_then(LongTable::of).map(|_| MessageFormat::Long)
+    lines.map(str::trim).find(|line| !line.is_empty()).and_then(LongTable::from_header).map(|_| MessageFormat::Long)
 }
 
 /// Channel of a source; a lower `class` is a better quantity for the channel.
@@ -150,7 +150,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
             (MessageFormat::Canboat, _) => canboat.message(&text),
             (MessageFormat::Long, Some(table)) => LongTable::message(table, &text),
             (MessageFormat::Long, table) => {
-                *table = LongTable::of(&text);
+                *table = LongTable::from_header(&text);
                 continue;
             }
         };

@@ -37,7 +37,7 @@ mod units;
 pub use description::draft_sidecar;
 pub use error::{Problem, ReadError};
 pub use inspection::{ChannelInspection, ChannelRelation};
-pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
+pub use limits::{MAX_CELLS, MAX_ROWS, RECORD_FILE};
 pub use lines::MAX_LINE_BYTES;
 pub use log::{ReadRecord, read, read_from, read_with};
 

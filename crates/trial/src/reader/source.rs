@@ -1,4 +1,4 @@
-//! Logs and channels of files before they become a record: series with their own instants, and the columns made by
+//! Logs and channels of files before they become a record: series at separate instants, and the columns made by
 //! [`super::assemble`].
 
 use std::ops::RangeInclusive;
@@ -16,7 +16,7 @@ use crate::sidecar::Sidecar;
 /// Maximum change by rounding of the arithmetic, in SI units and radians.
 const ROUNDING: f64 = 1e-9;
 
-/// Channel with its own sampling instants.
+/// Time series of a channel at separate sampling instants.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Series {
     /// Channel; values are in SI units and radians.
@@ -37,11 +37,11 @@ pub(super) enum Readings {
     InColumns,
     /// The columns as read.
     Columns(Columns),
-    /// Channels with their own instants, each with the shift (s) from its clock to that of the log.
+    /// Channels at separate instants, each with the shift (s) from its clock to the clock of the log.
     Series(Vec<(Series, f64)>),
 }
 
-/// Content of one or several files, cleaned and on a common clock.
+/// Log: the columns of one or several files, cleaned and on a common clock.
 #[derive(Debug, Clone, Default)]
 pub struct Log {
     pub(super) path: PathBuf,

@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
+use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::wording::shortened;
 
 /// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
@@ -19,7 +19,7 @@ const MAX_RUDDER_RAD: f64 = 0.8;
 /// Minimum number of a rudder in degrees: 90° in radians.
 const MIN_RUDDER_DEG: f64 = 1.6;
 
-/// Bounds of the ratio of the range of heading to that of rudder in a zig-zag: a factor of 56 apart, less than the
+/// Bounds of the ratio of heading range to rudder range in a zig-zag: a factor of 56 apart, less than the
 /// 57.3 between degrees and radians.
 pub(super) const ZIG_ZAG_RANGE_RATIO: [f64; 2] = [0.25, 14.0];
 
@@ -64,7 +64,7 @@ pub(super) fn infer_units(
 ) -> Result<Vec<Warning>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    // The unit of the heading requires that of the rudder, and the yaw rate that of the heading.
+    // The unit of the heading requires the unit of the rudder, and the yaw rate requires both.
     const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
     open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
     let (time, channels) = (&log.columns.time, &mut log.columns.channels);
@@ -226,7 +226,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let channels = &log.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
         let rate_deg_s = mean_rate(times, heading).to_degrees();
-        if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
+        if !(MEAN_RATE_RANGE_DEG_S[0]..MEAN_RATE_RANGE_DEG_S[1]).contains(&rate_deg_s) {
             return Err(refusal());
         }
     }

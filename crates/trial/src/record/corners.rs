@@ -40,7 +40,7 @@ pub(super) struct RecordedRudder {
 }
 
 impl RecordedRudder {
-    /// Rudder of some rows, with the corners that they imply.
+    /// Recorded rudder with the corners implied by its rows.
     pub fn new(rows: Polyline) -> Self {
         let corners = corners(&rows);
         let path = (!corners.is_empty()).then(|| through(&rows, &corners)).flatten();

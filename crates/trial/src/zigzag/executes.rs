@@ -36,7 +36,7 @@ struct Level {
 }
 
 impl Level {
-    fn of(rows: &mut [f64]) -> Option<Self> {
+    fn from_rows(rows: &mut [f64]) -> Option<Self> {
         let n = rows.len() as f64;
         // A median of many rows has π/2 the variance of their mean.
         let gain = if n < 3.0 { 1.0 / n.sqrt() } else { (0.5 * std::f64::consts::PI / n).sqrt() };
@@ -49,7 +49,7 @@ pub struct RudderMovements<'a> {
     time: &'a [f64],
     angle: &'a [f64],
     holds: &'a [Hold],
-    /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
+    /// Standard deviation of the rudder noise, rad; at least the rounding error of the channel.
     noise: f64,
     /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound if a ramp is
     /// about as long as a sampling interval, `None` if it is shorter.
@@ -99,7 +99,7 @@ impl<'a> RudderMovements<'a> {
             row -= 1;
         }
         let first = self.time.partition_point(|&t| t < self.time[row] - window).min(row);
-        let before = Level::of(&mut self.angle[first..=row].to_vec()).expect("the row itself is in the window");
+        let before = Level::from_rows(&mut self.angle[first..=row].to_vec()).expect("the row itself is in the window");
         self.movement(before, to)
     }
 
@@ -131,7 +131,7 @@ impl<'a> RudderMovements<'a> {
         let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
         let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
-        Some(self.movement(Level::of(&mut steady)?, to))
+        Some(self.movement(Level::from_rows(&mut steady)?, to))
     }
 
     /// Last row before a hold at which the rudder has moved at most a tenth of the way from `before`.

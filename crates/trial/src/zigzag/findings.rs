@@ -214,8 +214,8 @@ impl ZigZag {
         self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
 
-    /// Period from the first executes.
-    pub fn period_of(&self, executes: usize) -> Option<Quantity> {
+    /// Period over the first `executes` executes, s; `None` without a complete cycle.
+    pub fn period_over(&self, executes: usize) -> Option<Quantity> {
         period(self.executes.get(..executes).unwrap_or(&self.executes), self.first_side.is_some())
     }
 

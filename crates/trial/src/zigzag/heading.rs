@@ -167,7 +167,7 @@ impl Heading {
     /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1
     /// falling).
     ///
-    /// The standard deviation is that of the heading divided by the slope.
+    /// Standard deviation: error of the heading over the slope.
     pub fn crossing(&self, level: f64, side: f64, from: f64, to: f64) -> Option<Quantity> {
         let row = self.rows(from, to).find(|&row| {
             let t = self.time[row];

@@ -132,9 +132,9 @@ mod tests {
         rudder[10] = 0.15;
         rudder[80] = 0.05;
         rudder[100] = -0.6;
-        let found = holds(&rudder).expect("two reversals");
-        let rows: Vec<(f64, usize, usize)> = found.iter().map(|hold| (hold.side, hold.first, hold.last)).collect();
+        let all = holds(&rudder).expect("two reversals");
+        let rows: Vec<(f64, usize, usize)> = all.iter().map(|hold| (hold.side, hold.first, hold.last)).collect();
         assert_eq!(rows, [(1.0, 30, 69), (-1.0, 70, 119), (1.0, 120, 159)]);
-        assert_eq!(found[1].level, -0.21);
+        assert_eq!(all[1].level, -0.21);
     }
 }

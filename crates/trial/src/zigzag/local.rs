@@ -95,22 +95,22 @@ impl<const N: usize> LocalPolynomial<N> {
         slopes.dot(&(self.inverse_gram * slopes)).max(0.0).sqrt() / self.half_width
     }
 
-    /// Value at time `t`, with its standard deviation if that of the white noise is given.
+    /// Value at time `t`, with its standard deviation if `noise`, of the white noise, is given.
     pub fn value_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.value(t), noise.map(|sd| sd * self.value_gain(t)))
     }
 
-    /// Slope at time `t`, per second, with its standard deviation if that of the white noise is given.
+    /// Slope at time `t`, per second, with its standard deviation if `noise`, of the white noise, is given.
     pub fn slope_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.slope(t), noise.map(|sd| sd * self.slope_gain(t)))
     }
 
-    /// Time `t` of a stationary point, with its standard deviation if that of the white noise is given.
+    /// Time `t` of a stationary point, with its standard deviation if `noise`, of the white noise, is given.
     pub fn time_of_peak(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.slope_gain(t) / self.curvature(t).abs()))
     }
 
-    /// Time `t` of a crossing, with its standard deviation if that of the white noise is given.
+    /// Time `t` of a crossing, with its standard deviation if `noise`, of the white noise, is given.
     pub fn time_of_crossing(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }

@@ -150,9 +150,9 @@ mod tests {
         let changes = heading.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
         let noisy = zero_crossings(&time, &heading, 4.0);
         // The record begins on the base course, so noise may add a first crossing there.
-        let [noisy, quiet] = [noisy, quiet].map(|mut found| {
-            found.retain(|[time, _]| *time > 20.0);
-            found
+        let [noisy, quiet] = [noisy, quiet].map(|mut points| {
+            points.retain(|[time, _]| *time > 20.0);
+            points
         });
         assert!(changes > quiet.len() + 4, "{changes} changes of sign");
         assert_eq!(noisy.len(), quiet.len());

@@ -1,7 +1,7 @@
 //! Effect written as a line of text: a formula over the signals of a trial, with constants that are fitted.
 //!
 //! The formula of a user is a yaw moment as equivalent rudder angle, rad: T r' + r = K (δ + δ_r + formula). The
-//! properties of its constants are found by evaluation. A formula of the list has a description, and is a yaw
+//! properties of its constants follow from evaluation. A formula of the list has a description, and is a yaw
 //! acceleration or the acting rudder.
 
 mod columns;
@@ -16,13 +16,15 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use estimation::number::Real;
 
-use super::effect::{Action, ActsOn, CandidateEffect, Description, Effect, OperatingPoint, Prior, RecordScales};
+use super::effect::{
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Prior, RecordScales,
+};
 use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
-use parse::MAX_CHARS;
+use parse::MAX_FORMULA_CHARS;
 use points::{SignalScales, way_speed};
 use program::{FormulaProgram, FormulaSignal, RECORD_CONSTANTS, RecordConstants};
 
@@ -59,15 +61,15 @@ impl MirrorSymmetry {
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
     pub(super) description: Description,
-    /// [`ActsOn::RUDDER`] for the acting rudder, from `delta` alone, rad; [`ActsOn::MOMENT`] for a yaw acceleration,
-    /// rad/s², which is `K_over_T` times the moment as equivalent rudder angle.
-    pub(super) acts_on: ActsOn,
+    /// [`EffectTarget::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTarget::MOMENT`] for a yaw
+    /// acceleration, rad/s²: `K_over_T` times the moment as equivalent rudder angle.
+    pub(super) acts_on: EffectTarget,
     /// Formula; [`parse`] has the language.
     pub(super) formula: &'static str,
     /// Prior of every constant.
     pub(super) prior: ListedPrior,
     /// `true` for a moment of the weather.
-    pub(super) of_weather: bool,
+    pub(super) is_weather: bool,
 }
 
 /// Prior of the constants in given records: mean, standard deviation and maximum.
@@ -78,7 +80,7 @@ pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 pub struct Formula {
     program: FormulaProgram,
     description: Description,
-    acts_on: ActsOn,
+    acts_on: EffectTarget,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
     of_record: RecordConstants,
@@ -149,7 +151,7 @@ impl Formula {
             channels: program.channels(),
             program,
             description,
-            acts_on: ActsOn::MOMENT,
+            acts_on: EffectTarget::MOMENT,
             of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
@@ -169,8 +171,8 @@ impl Formula {
             return Err(error(0, expected));
         }
         let length = text.chars().count();
-        if length > MAX_CHARS {
-            return Err(error(MAX_CHARS, format!("{length} characters, expected at most {MAX_CHARS}")));
+        if length > MAX_FORMULA_CHARS {
+            return Err(error(MAX_FORMULA_CHARS, format!("{length} characters, expected at most {MAX_FORMULA_CHARS}")));
         }
         let (formula, expectation) = text.split_once(';').unwrap_or((text, ""));
         let program = parse::parse(formula.trim_end(), true)?;
@@ -238,7 +240,7 @@ impl Effect for Formula {
         if !self.channels.iter().copied().all(has) {
             return None;
         }
-        let SignalScales { speed, length, .. } = SignalScales::of(records);
+        let SignalScales { speed, length, .. } = SignalScales::from_records(records);
         let is_always = f64::from(u8::from(records.speed.is_none()));
         let of_record = [speed, records.span[0], length, way_speed(records), is_always];
         let effect = Self { of_record, ..self.clone() };
@@ -253,7 +255,7 @@ impl Effect for Formula {
         Some(CandidateEffect::new(effect, priors))
     }
 
-    fn acts_on(&self) -> ActsOn {
+    fn acts_on(&self) -> EffectTarget {
         self.acts_on
     }
 
@@ -285,7 +287,7 @@ impl Effect for Formula {
     }
 
     fn is_environmental(&self) -> bool {
-        self.listed.is_some_and(|row| row.of_weather)
+        self.listed.is_some_and(|row| row.is_weather)
     }
 
     /// `false`: the lateral way is relative to the initial course, so it does not depend on the absolute heading.
@@ -294,7 +296,7 @@ impl Effect for Formula {
     }
 }
 
-impl<R: Real> Action<R> for Formula {
+impl<R: Real> EffectEquations<R> for Formula {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
         if let [way, course] = z {
             (*way, *course) = (R::from(0.0), now.heading);

@@ -2,10 +2,12 @@
 //!
 //! Source: Aho, Lam, Sethi and Ullman (2006), Compilers, second edition, section 4.4.
 
-use super::program::{FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK};
+use super::program::{
+    FormulaFunction, FormulaOperator, FormulaProgram, FormulaSignal, Instruction, Operand, STACK_SIZE,
+};
 
 /// Maximum number of characters in a formula.
-pub(super) const MAX_CHARS: usize = 400;
+pub(super) const MAX_FORMULA_CHARS: usize = 400;
 /// Maximum nesting depth of brackets, signs and powers.
 const MAX_DEPTH: usize = 24;
 /// Maximum number of fitted constants.
@@ -19,14 +21,14 @@ pub struct FormulaError {
     pub text: String,
     /// Position: number of characters before it.
     pub position: usize,
-    /// Problem at the position: symbol found and symbols expected.
+    /// Problem at the position: given symbol and expected symbols.
     pub problem: String,
 }
 
 /// Text around a position, with a mark under it.
 fn marked(text: &str, at: usize) -> String {
-    let left_out = at.saturating_sub(MAX_CHARS);
-    let near: String = text.chars().skip(left_out).take(2 * MAX_CHARS).collect();
+    let left_out = at.saturating_sub(MAX_FORMULA_CHARS);
+    let near: String = text.chars().skip(left_out).take(2 * MAX_FORMULA_CHARS).collect();
     format!("  {near}\n  {}^", " ".repeat(at - left_out))
 }
 
@@ -113,8 +115,8 @@ impl FormulaParser {
             Instruction::Operate(_) => self.waiting -= 1,
             _ => {}
         }
-        if self.waiting > STACK {
-            let problem = format!("more than {STACK} intermediate values; use fewer brackets");
+        if self.waiting > STACK_SIZE {
+            let problem = format!("more than {STACK_SIZE} intermediate values; use fewer brackets");
             return Err(self.error(self.at, problem));
         }
         self.program.instructions.push(step);

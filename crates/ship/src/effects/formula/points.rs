@@ -33,7 +33,7 @@ impl SignalScales {
     }
 
     /// Scales in records: r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
-    pub(super) fn of(records: &RecordScales) -> Self {
+    pub(super) fn from_records(records: &RecordScales) -> Self {
         let speed = records.speed.or(records.sway).unwrap_or(1.0);
         Self {
             yaw_rate: 0.3 / records.time,
@@ -95,7 +95,7 @@ impl SignalPoint {
         Self { signed: self.signed.map(|value| -value), ..self }
     }
 
-    pub(super) fn of(&self, signal: FormulaSignal) -> f64 {
+    pub(super) fn signal(&self, signal: FormulaSignal) -> f64 {
         let Self { scales, signed: [r, delta, psi, v, angle, y], positive: [speed, n, t, wind], second, metre } = *self;
         let per_second = metre / second;
         match signal {

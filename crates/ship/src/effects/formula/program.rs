@@ -8,7 +8,7 @@ use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
 /// Capacity of the stack, in values, and the capacity that suffices for most formulas (also in signals).
-pub(super) const STACK: usize = 16;
+pub(super) const STACK_SIZE: usize = 16;
 const SMALL_STACK: usize = 3;
 
 /// Signal that a formula can name. Units and signs as in NOTATION.md.
@@ -294,7 +294,7 @@ impl FormulaProgram {
         match (self.signals.len(), self.waiting) {
             (0..=2, 0..=1) => self.run::<R, 2, 1>(constants, signal),
             (0..=SMALL_STACK, 0..=SMALL_STACK) => self.run::<R, SMALL_STACK, SMALL_STACK>(constants, signal),
-            _ => self.run::<R, STACK, STACK>(constants, signal),
+            _ => self.run::<R, STACK_SIZE, STACK_SIZE>(constants, signal),
         }
     }
 

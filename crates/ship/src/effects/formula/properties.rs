@@ -1,4 +1,4 @@
-//! Properties of a formula, found by evaluation at sample points: amplitudes (sizes) and shape constants, their
+//! Properties of a formula from its values at sample points: amplitudes (sizes) and shape constants, their
 //! symmetry and units, and their priors.
 
 use super::points::{SignalPoint, SignalScales};
@@ -16,12 +16,12 @@ const MOMENT_SHARE: f64 = 0.2;
 impl Formula {
     /// Value at a point: a yaw acceleration or a rudder angle.
     pub(super) fn value_at(&self, constants: &[f64], point: &SignalPoint) -> f64 {
-        self.program.value(constants, |signal| point.of(signal))
+        self.program.value(constants, |signal| point.signal(signal))
     }
 
     /// Moment as equivalent rudder angle, rad.
     fn moment(&self, constants: &[f64], point: &SignalPoint) -> f64 {
-        self.value_at(constants, point) / point.of(FormulaSignal::Gain)
+        self.value_at(constants, point) / point.signal(FormulaSignal::Gain)
     }
 
     /// For every constant, `true` if it is a size: the moment is proportional to it.
@@ -174,7 +174,7 @@ impl Formula {
     /// size of a moment of a fifth of the maximum rudder angle. A shape is normal about its expected value, with half
     /// of that value as standard deviation. `None` if a prior is not finite.
     pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
-        let scales = SignalScales::of(records);
+        let scales = SignalScales::from_records(records);
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {
             if !self.is_size[place] {

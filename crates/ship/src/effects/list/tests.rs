@@ -53,7 +53,7 @@ fn rows_are_their_equations_to_the_last_bit() {
         let constants: Vec<f64> =
             formula.constants().iter().map(|(neutral, _)| if *neutral > 0.0 { 7.3 } else { 3.25 }).collect();
         let formula = formula.with_constants(&constants).expect("as many");
-        let acts = Tangent::action(formula.as_ref());
+        let acts = Tangent::effect_equations(formula.as_ref());
         for round in 0..500 {
             let variable = |place: u32, size: f64| {
                 Tangent::variable(size * number(round, place), place as usize, 0.5 + number(round, place + 20).abs())

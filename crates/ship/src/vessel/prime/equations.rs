@@ -30,10 +30,10 @@ pub(super) const fn bounded(key: &'static str, symbol: &'static str, ends: [f64;
 }
 
 /// Rudder bias δ_r, a coefficient of every form.
-pub(super) const BIAS: PolynomialTerm = free("delta_r", "δ_r");
+pub(super) const BIAS_TERM: PolynomialTerm = free("delta_r", "δ_r");
 
 /// Coefficients of both polynomials.
-pub(super) const COMMON: [PolynomialTerm; 14] = [
+pub(super) const COMMON_TERMS: [PolynomialTerm; 14] = [
     free("Nv", "N_v"),
     free("Nr", "N_r"),
     bounded("Nd", "N_δ", [0.05, 5.0]),
@@ -42,7 +42,7 @@ pub(super) const COMMON: [PolynomialTerm; 14] = [
     free("Yd", "Y_δ"),
     bounded("e", "e", [-0.5, 1.5]),
     free("b", "b"),
-    BIAS,
+    BIAS_TERM,
     bounded("x0", "x₀", [0.005, 0.5]),
     bounded("k", "k", [0.0, 0.9]),
     free("Xvr", "X_vr"),
@@ -51,15 +51,15 @@ pub(super) const COMMON: [PolynomialTerm; 14] = [
 ];
 
 /// Further coefficients of the quadratic polynomial.
-pub(super) const QUADRATIC: [PolynomialTerm; 4] = [
+pub(super) const QUADRATIC_TERMS: [PolynomialTerm; 4] = [
     bounded("Nrr", "N_rr", [-20.0, 0.5]),
     free("Nvv", "N_vv"),
     bounded("Yvv", "Y_vv", [-20.0, 0.5]),
     free("Yrr", "Y_rr"),
 ];
 
-/// Third-order hull coefficients N_vvv to Y_vrr, nondimensional, in addition to `COMMON`.
-pub(super) const CUBIC: [PolynomialTerm; 7] = [
+/// Third-order hull coefficients N_vvv to Y_vrr, nondimensional, in addition to `COMMON_TERMS`.
+pub(super) const CUBIC_TERMS: [PolynomialTerm; 7] = [
     free("Nvvv", "N_vvv"),
     free("Nvvr", "N_vvr"),
     free("Nvrr", "N_vrr"),
@@ -82,9 +82,9 @@ pub struct PrimeHull<R = f64> {
 #[derive(Debug, Clone, PartialEq)]
 pub enum CalmHull<R = f64> {
     /// Quadratic polynomial.
-    Quadratic([R; COMMON.len() + QUADRATIC.len()]),
+    Quadratic([R; COMMON_TERMS.len() + QUADRATIC_TERMS.len()]),
     /// Cubic polynomial.
-    Cubic([R; COMMON.len() + CUBIC.len()]),
+    Cubic([R; COMMON_TERMS.len() + CUBIC_TERMS.len()]),
     /// MMG model, and δ_r.
     Mmg(Box<Mmg<R>>, R),
 }
@@ -131,7 +131,7 @@ fn limited<R: Real>(value: R, least: f64) -> R {
     value.clamped(R::from(least), R::from(MAX_PRIME_SPEED))
 }
 
-/// Terms of both polynomials, with coefficients in the order of [`COMMON`].
+/// Terms of both polynomials, with coefficients in the order of [`COMMON_TERMS`].
 #[inline]
 fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f64) -> [R; 3] {
     let w = (p[6] * (u - n) + n).at_least(MIN_INFLOW);

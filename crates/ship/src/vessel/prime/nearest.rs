@@ -15,7 +15,7 @@
 use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 
-use super::equations::{COMMON, CUBIC, CalmHull, PolynomialTerm, QUADRATIC};
+use super::equations::{COMMON_TERMS, CUBIC_TERMS, CalmHull, PolynomialTerm, QUADRATIC_TERMS};
 use crate::vessel::mmg::{Mmg, Parameters};
 use crate::vessel::prior::HullPrior;
 
@@ -64,8 +64,8 @@ pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]>
 /// fails.
 fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
-        law(CalmHull::<Dual<{ COMMON.len() + QUADRATIC.len() }>>::Quadratic, truth, differences)?,
-        law(CalmHull::<Dual<{ COMMON.len() + CUBIC.len() }>>::Cubic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON_TERMS.len() + QUADRATIC_TERMS.len() }>>::Quadratic, truth, differences)?,
+        law(CalmHull::<Dual<{ COMMON_TERMS.len() + CUBIC_TERMS.len() }>>::Cubic, truth, differences)?,
     ])
 }
 
@@ -90,7 +90,7 @@ fn law<const N: usize>(
     truth: &DVector<f64>,
     differences: &DMatrix<f64>,
 ) -> Option<PolynomialLaw> {
-    let mut values = DVector::from_fn(N, |place, _| COMMON.get(place).map_or(0.0, begin));
+    let mut values = DVector::from_fn(N, |place, _| COMMON_TERMS.get(place).map_or(0.0, begin));
     let linearised = |values: &DVector<f64>| {
         let variables = std::array::from_fn(|place| Dual::variable(values[place], place, 1.0));
         let rows = accelerations(&polynomial(variables));
@@ -111,14 +111,14 @@ fn law<const N: usize>(
 mod tests {
     use super::*;
     use crate::dynamics::Input;
-    use crate::ships::{self, Model};
+    use crate::ships::{self, ShipModel};
     use crate::vessel::prime::HullForm;
     use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
     use estimation::statistics::median;
 
     /// u', v' and r' of a hull in every state; `None` for a ship that is a response model.
     fn published(ship: &ships::Ship) -> Option<DVector<f64>> {
-        let (Model::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
+        let (ShipModel::Hull(hull), Some(scale)) = (&ship.model, ship.particulars) else { return None };
         let second = scale.length / scale.speed;
         let mut state = vec![0.0; hull.dimension()];
         hull.approach(0.0, 0.0, &mut state);

@@ -26,7 +26,7 @@ pub struct CoefficientFormula {
     pub key: &'static str,
     /// Symbol.
     pub symbol: &'static str,
-    pub(super) of: fn(&HullDimensions) -> f64,
+    pub(super) mean: fn(&HullDimensions) -> f64,
     pub(super) spread: Spread,
     /// Formula as text: an equation in L, B, d, C_b and other particulars, or a number.
     pub text: &'static str,
@@ -38,12 +38,12 @@ pub struct CoefficientFormula {
 const fn row(
     key: &'static str,
     symbol: &'static str,
-    of: fn(&HullDimensions) -> f64,
+    mean: fn(&HullDimensions) -> f64,
     spread: Spread,
     text: &'static str,
     source: &'static str,
 ) -> CoefficientFormula {
-    CoefficientFormula { key, symbol, of, spread, text, source }
+    CoefficientFormula { key, symbol, mean, spread, text, source }
 }
 
 impl HullDimensions {

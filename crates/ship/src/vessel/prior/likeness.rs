@@ -28,7 +28,7 @@ fn is_of_hull(key: &str) -> bool {
 
 impl HullParticulars {
     /// `true` if both lengths are equal except for rounding.
-    pub fn has_length_of(&self, other: &Self) -> bool {
+    pub fn has_equal_length(&self, other: &Self) -> bool {
         (self.length / other.length - 1.0).abs() <= ROUNDING_TOLERANCE
     }
 
@@ -83,7 +83,9 @@ mod tests {
         assert!(near(model.beam, 1.27) && near(model.draught, 0.455) && near(model.rudder_area, 0.0539), "{model:?}");
         assert_eq!((model.block_coefficient, model.propeller_rate, model.length), (Some(0.81), None, 7.0));
         assert!(model.differing_keys(&KVLCC2).is_empty() && bare.differing_keys(&KVLCC2).is_empty());
-        assert!(!model.has_length_of(&KVLCC2) && (model.froude_number() / KVLCC2.froude_number() - 1.0).abs() < 0.01);
+        assert!(
+            !model.has_equal_length(&KVLCC2) && (model.froude_number() / KVLCC2.froude_number() - 1.0).abs() < 0.01
+        );
     }
 
     #[test]

@@ -153,7 +153,7 @@ pub(super) struct Ratio {
     pub sd: f64,
     /// Range of ships.
     range: [f64; 2],
-    of: fn(&HullDimensions) -> f64,
+    ratio: fn(&HullDimensions) -> f64,
 }
 
 impl Ratio {
@@ -161,9 +161,9 @@ impl Ratio {
         [name, fills]: [&'static str; 2],
         [mean, sd]: [f64; 2],
         range: [f64; 2],
-        of: fn(&HullDimensions) -> f64,
+        ratio: fn(&HullDimensions) -> f64,
     ) -> Self {
-        Self { name, fills, mean, sd, range, of }
+        Self { name, fills, mean, sd, range, ratio }
     }
 
     /// Mean and standard deviation as text.
@@ -216,13 +216,13 @@ pub(super) struct HullDimensions {
 
 /// Error of a particular outside the range of ships.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{what} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
+#[error("{quantity} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
     ShortNumber::rounded(.range[0], 4), ShortNumber::rounded(.range[1], 4), in_unit(.unit))]
 pub struct ParticularsError {
     /// Key of the particular, or the last key of a contradiction.
     pub key: &'static str,
     /// Quantity, with the keys that give it.
-    pub what: String,
+    pub quantity: String,
     /// Value.
     pub value: f64,
     /// Range of ships.
@@ -292,27 +292,27 @@ impl HullParticulars {
             "1",
             cure,
         )?;
-        for Ratio { name, fills, range, of, .. } in RATIOS {
+        for Ratio { name, fills, range, ratio, .. } in RATIOS {
             let cure = "give all lengths of one ship at one scale, in metres; a missing particular is estimated from the length \
                         (`study list priors`)";
-            within(fills, format!("{name} ({fills})"), of(form), range, "1", cure)?;
+            within(fills, format!("{name} ({fills})"), ratio(form), range, "1", cure)?;
         }
         if let Some(volume) = self.volume() {
             let share = volume / (form.Cb * form.L * form.B * form.d);
             let range = [1.0 - DISPLACEMENT_TOLERANCE, 1.0 + DISPLACEMENT_TOLERANCE];
             let cure = "correct one of displacement-t, block-coefficient, length-m, beam-m and draught-m";
-            let what = "the displaced volume of displacement-t over C_b L B d";
-            within("displacement-t", what.into(), share, range, "1", cure)?;
+            let quantity = "the displaced volume of displacement-t over C_b L B d";
+            within("displacement-t", quantity.into(), share, range, "1", cure)?;
         }
         let cure = "give revolutions per second, and the diameter and the speed of the same scale";
-        let what = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
-        within("propeller-rps", what.into(), form.advance_ratio(), ADVANCE_RANGE, "1", cure)
+        let quantity = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
+        within("propeller-rps", quantity.into(), form.advance_ratio(), ADVANCE_RANGE, "1", cure)
     }
 }
 
 fn within(
     key: &'static str,
-    what: String,
+    quantity: String,
     value: f64,
     range: [f64; 2],
     unit: &'static str,
@@ -323,5 +323,5 @@ fn within(
     if (lowest..=highest).contains(&value) {
         return Ok(());
     }
-    Err(ParticularsError { key, what, value, range, unit, cure })
+    Err(ParticularsError { key, quantity, value, range, unit, cure })
 }

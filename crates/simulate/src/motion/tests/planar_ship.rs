@@ -8,11 +8,11 @@ use ship::effects::SpeedLoss;
 use ship::replay::RecordedSignals;
 use ship::{Dynamics, Polyline, ResponseModel};
 
-use crate::motion::{COEFFICIENTS, Planar, PlanarCoefficients, PlanarShip};
+use crate::motion::{COEFFICIENT_COUNT, Planar, PlanarCoefficients, PlanarShip};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
-const TRUTH: [f64; COEFFICIENTS] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
+const TRUTH: [f64; COEFFICIENT_COUNT] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
 
 fn planar() -> Planar {
     Planar::new(PlanarCoefficients::from_array(TRUTH), LENGTH, SPEED).expect("a ship")
@@ -123,5 +123,5 @@ fn numbers_that_are_no_ship_are_refused() {
     for (length, speed) in [(0.0, SPEED), (LENGTH, 0.0), (f64::NAN, SPEED), (LENGTH, f64::INFINITY)] {
         assert!(Planar::new(coefficients, length, speed).is_err(), "{length} {speed}");
     }
-    assert_eq!(PlanarCoefficients::from_array([-1.0; COEFFICIENTS]).X_dv, 0.0);
+    assert_eq!(PlanarCoefficients::from_array([-1.0; COEFFICIENT_COUNT]).X_dv, 0.0);
 }

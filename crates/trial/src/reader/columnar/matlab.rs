@@ -11,13 +11,13 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::text::{self, Written};
+use super::text::{self, ChunkReader};
 use crate::file::FileError;
 use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
-use crate::reader::{MAX_CELLS, RECORD};
+use crate::reader::{MAX_CELLS, RECORD_FILE};
 use variable::{
-    ByteCursor, CELL, COMPRESSED, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
+    ByteCursor, CELL_ARRAY, COMPRESSED, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
 };
 
 pub use level4::is_level4;
@@ -89,7 +89,7 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
         let length = ByteCursor { tail: &bytes[4..], big_endian }.word().unwrap_or(0);
         let remaining = (u64::from(length) + 8).saturating_sub(FLAGS_END_BYTES as u64);
         if read(&mut bytes, remaining.min(MAX_UNPACKED_BYTES))? == 0 {
-            return Err(FileError::TooLarge { kind: RECORD, size: None }.into());
+            return Err(FileError::TooLarge { kind: RECORD_FILE, size: None }.into());
         }
     } else {
         read(&mut bytes, (NAME_END_BYTES - FLAGS_END_BYTES) as u64)?;
@@ -127,7 +127,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     Ok((numeric, left_out))
 }
 
-/// Table of a file as text: the variables of equal length with the most known names, or else the most numbers.
+/// Reader of a MATLAB file as tab-separated text: variables of the length with most known names, else most numbers.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::column_meaning(name)? {
@@ -137,7 +137,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     };
     let is_lacking = |cell: &&OtherVariable| {
         let wanted = quantity(&cell.name);
-        cell.kind == CELL && wanted.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != wanted)
+        cell.kind == CELL_ARRAY && wanted.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != wanted)
     };
     if let Some(cell) = left_out.iter().find(is_lacking) {
         return Err(Problem::CellArray { column: cell.name.clone() });
@@ -173,5 +173,5 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         });
         Ok(text)
     };
-    Ok(Box::new(Written::new((0..=length).map(line))))
+    Ok(Box::new(ChunkReader::new((0..=length).map(line))))
 }

@@ -39,7 +39,7 @@ impl BinaryFormat {
         }
     }
 
-    /// Table of a file of this kind as text: names in the first line, a tab between two cells.
+    /// Reader of the table in a binary file as tab-separated UTF-8 text: column names, then one line per row.
     ///
     /// Fails if the file is damaged, uses an unsupported compression, or contains no table.
     pub fn read_as_text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {

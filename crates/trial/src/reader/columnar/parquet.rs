@@ -14,7 +14,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::text::{self, Written};
+use super::text::{self, ChunkReader};
 use crate::decoder::{CheckedPages, PageHead, catch_panic};
 use crate::reader::error::Problem;
 
@@ -61,7 +61,7 @@ enum Meaning {
 
 impl Meaning {
     /// Meaning of a column; `None` for a type that is neither number, stamp nor text.
-    fn of(column: &ColumnDescriptor) -> Option<Self> {
+    fn from_descriptor(column: &ColumnDescriptor) -> Option<Self> {
         let per_second = |unit: &TimeUnit| match unit {
             TimeUnit::MILLIS => 1_000,
             TimeUnit::MICROS => 1_000_000,
@@ -141,10 +141,10 @@ fn failed(error: ParquetError) -> Problem {
     damaged(error.to_string())
 }
 
-/// Table of a file as text.
+/// Reader of a Parquet file as tab-separated text, decoded chunk by chunk; names first, then rows.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let mut rows = checked(|| Rows::open(bytes))?;
-    Ok(Box::new(Written::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
+    Ok(Box::new(ChunkReader::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
 }
 
 fn checked<T>(work: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
@@ -168,7 +168,7 @@ impl Rows {
         let mut columns = Vec::new();
         for (index, column) in schema.columns().iter().enumerate() {
             let flat = column.max_rep_level() == 0 && column.path().parts().len() == 1;
-            let Some(meaning) = Meaning::of(column).filter(|_| flat) else { continue };
+            let Some(meaning) = Meaning::from_descriptor(column).filter(|_| flat) else { continue };
             let name = column.name().to_owned();
             columns.push(Column { index, name, meaning, reader: None, cells: Cells::default() });
         }

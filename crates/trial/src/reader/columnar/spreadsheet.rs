@@ -1,7 +1,7 @@
 //! Excel spreadsheets (.xlsx) as text: a single sheet, with its rows on the line numbers of Excel. Formulas have the
 //! values stored with them. Other kinds of spreadsheets are not read.
 //!
-//! The decoder borrows the file while it reads a sheet; it therefore runs in its own thread, which waits until
+//! The decoder borrows the file while it reads a sheet; it therefore runs in a separate thread, which waits until
 //! its lines are read.
 //!
 //! Source of the layout: ECMA-376, Office Open XML File Formats, part 1.
@@ -11,7 +11,7 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 
 use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use super::text::{self, Written};
+use super::text::{self, ChunkReader};
 use crate::decoder::catch_panic;
 use crate::names;
 use crate::reader::error::Problem;
@@ -36,7 +36,7 @@ fn damaged(damage: impl ToString) -> Problem {
     Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", damage: damage.to_string() }
 }
 
-/// Table of a file as text.
+/// Reader of the sheet with the table as tab-separated text; a thread decodes the rows.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {
@@ -47,7 +47,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         }
     };
     std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::from_input)?;
-    Ok(Box::new(Written::new(receive.into_iter())))
+    Ok(Box::new(ChunkReader::new(receive.into_iter())))
 }
 
 /// Sends the lines of the sheet with the table.

@@ -7,19 +7,19 @@ use crate::clock;
 use crate::reader::error::Problem;
 
 /// Reader of chunks of lines as they are written.
-pub struct Written<I> {
+pub struct ChunkReader<I> {
     chunks: I,
     text: String,
     consumed: usize,
 }
 
-impl<I: Iterator<Item = Result<String, Problem>>> Written<I> {
+impl<I: Iterator<Item = Result<String, Problem>>> ChunkReader<I> {
     pub fn new(chunks: I) -> Self {
         Self { chunks, text: String::new(), consumed: 0 }
     }
 }
 
-impl<I: Iterator<Item = Result<String, Problem>>> Read for Written<I> {
+impl<I: Iterator<Item = Result<String, Problem>>> Read for ChunkReader<I> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         while self.consumed == self.text.len()
             && let Some(chunk) = self.chunks.next()

@@ -84,7 +84,7 @@ mod tests {
             "12,0x123,2,0x0a,0x00",
         ];
         frames.iter().for_each(|line| assert!(is_frame(line), "{line}"));
-        let others = [
+        let other_lines = [
             "0.0,350.0,10.5",
             "20261120 12345678 8 10 20 30 40 50 60 70 80",
             "t_s,heading_deg,rudder_deg",
@@ -96,12 +96,12 @@ mod tests {
             "$HEHDT,350.0,T*2F",
             "",
         ];
-        others.iter().for_each(|line| assert!(!is_frame(line), "{line}"));
-        assert!(is_log(["Time,ID,DLC,Data", frames[4], "", frames[4]].into_iter()) && !is_log(others.into_iter()));
-        assert!(!is_log([frames[4], others[0]].into_iter()) && !is_log([].into_iter()));
+        other_lines.iter().for_each(|line| assert!(!is_frame(line), "{line}"));
+        assert!(is_log(["Time,ID,DLC,Data", frames[4], "", frames[4]].into_iter()) && !is_log(other_lines.into_iter()));
+        assert!(!is_log([frames[4], other_lines[0]].into_iter()) && !is_log([].into_iter()));
         let python_can =
             ["", "timestamp,arbitration_id,extended,remote,error,dlc,data", "0.01,0x9f1120a,1,0,0,8,/xAn/3//f/0="];
         assert!(is_python_can(python_can.into_iter()) && !is_log(python_can.into_iter()));
-        assert!(!is_python_can(others.into_iter()) && !is_python_can([].into_iter()));
+        assert!(!is_python_can(other_lines.into_iter()) && !is_python_can([].into_iter()));
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct LongTable {
 
 impl LongTable {
     /// Table with this header; `None` for a table of another kind.
-    pub fn of(header: &str) -> Option<Self> {
+    pub fn from_header(header: &str) -> Option<Self> {
         let is_name = |cell: &str, column: usize| COLUMNS[column].contains(&cell.to_lowercase().as_str());
         let count_names = |cells: &[&str]| cells.iter().filter(|cell| (0..4).any(|k| is_name(cell, k))).count();
         let separator = detect_separator(header, count_names);

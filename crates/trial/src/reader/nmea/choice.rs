@@ -52,16 +52,16 @@ impl<'a> Offer<'a> {
 const MAX_RUDDER_DIFFERENCE_DEG: f64 = 2.0;
 
 /// Channels of a log with the warnings of their choice.
-pub(super) struct Choice<'a> {
+pub(super) struct ChosenInstruments<'a> {
     instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
     /// Decisions between instruments, and implausible entries.
     pub warnings: Vec<Warning>,
 }
 
-impl<'a> Choice<'a> {
+impl<'a> ChosenInstruments<'a> {
     /// All channels of the instruments.
-    pub fn of(instruments: &'a [NmeaInstrument]) -> Self {
+    pub fn from_instruments(instruments: &'a [NmeaInstrument]) -> Self {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
@@ -106,8 +106,7 @@ impl<'a> Choice<'a> {
         }
         if always || !unused.is_empty() {
             let mut text = format!("{what} from {} ({})", chosen.name(), counted(chosen.readings, "reading"));
-            let names: Vec<String> =
-                unused.iter().map(|offer| format!("{} ({})", offer.name(), offer.readings)).collect();
+            let names: Vec<String> = unused.iter().map(|seen| format!("{} ({})", seen.name(), seen.readings)).collect();
             match names.as_slice() {
                 [] => {}
                 [name] => text.push_str(&format!("; {name} is not used")),

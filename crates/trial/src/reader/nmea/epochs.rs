@@ -77,7 +77,7 @@ fn spread_stamps(at: &mut [f64]) -> bool {
     spread(at, &groups.collect::<Vec<_>>(), usual)
 }
 
-/// Intervals from each of some instants to the next (the last interval is repeated), and their median; `None` for fewer
+/// Intervals from each instant to the next (the last interval is repeated), and their median; `None` for fewer
 /// than two instants.
 fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -86,7 +86,7 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
     Some((lengths, usual))
 }
 
-/// Instants of a log with the time in some of its sentences.
+/// Instants of a log whose time is in its sentences.
 ///
 /// Fails without at least two different times, and if they decrease for more than one sentence.
 pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {

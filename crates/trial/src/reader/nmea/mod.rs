@@ -19,7 +19,7 @@ use std::io::Read;
 
 use document::{Warning, WarningCode};
 
-use self::choice::Choice;
+use self::choice::ChosenInstruments;
 use self::epochs::{is_or_are, rounded, timing_from_sentences, timing_from_stamps};
 use self::frame::{Line, frame};
 use self::log::{Counts, NmeaLog};
@@ -109,7 +109,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
     let (clock, timing) = if log.stamped { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
     let mut warnings = count_warnings(&counts, lines);
     warnings.extend(timing);
-    let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
+    let ChosenInstruments { mut series, warnings: choices, .. } = ChosenInstruments::from_instruments(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });

@@ -149,7 +149,7 @@ pub(super) const XDR: &[u8; 3] = b"XDR";
 
 /// Sentence with a formatter.
 pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
-    SENTENCES.iter().find(|(known, ..)| *known == formatter)
+    SENTENCES.iter().find(|(name, ..)| *name == formatter)
 }
 
 /// Number with its bounds, and its factor to SI units and radians.

@@ -8,7 +8,7 @@ use crate::clock::{SECONDS_PER_DAY, Stamp};
 
 /// Maximum length of the text before a sentence, bytes; a longer text has no stamp.
 const MAX_TEXT_BYTES: usize = 120;
-/// Maximum number of words before a sentence that are read.
+/// Maximum number of blank-separated parts that are read before a sentence.
 const MAX_WORDS: usize = 8;
 /// Maximum number of sources.
 const MAX_SOURCES: usize = 64;
@@ -18,7 +18,7 @@ const MAX_SOURCES: usize = 64;
 pub(super) struct PrefixReader {
     /// Names of sources; the number of a source is its index plus 1, 0 means no source.
     pub sources: Vec<String>,
-    /// Range of words of the last stamp, which is the same in most lines of a log.
+    /// Range of blank-separated parts with the last stamp, the same in most lines of a log.
     window: Option<(usize, usize)>,
     /// Text before the last sentence, with its stamp and source.
     last: String,
@@ -58,18 +58,18 @@ impl PrefixReader {
         (value("c:").and_then(since_1970), self.source(value("s:").unwrap_or("")))
     }
 
-    /// Reads words with a stamp among them and the name of a source.
+    /// Stamp and source in the plain text before a sentence.
     fn plain_text(&mut self, before: &str) -> (Option<Stamp>, u8) {
         let text = before.replace(['"', '\'', '[', ']', '(', ')', '<', '>'], "");
         let all = text.split([' ', '\t', ',', ';', '|']).filter(|word| !word.is_empty());
-        let words = all.take(MAX_WORDS).collect::<Vec<&str>>();
+        let parts = all.take(MAX_WORDS).collect::<Vec<&str>>();
         let begin = |word: &str| word.as_ptr() as usize - text.as_ptr() as usize;
         let read = |(from, until): (usize, usize)| {
-            let (first, last) = (words.get(from)?, words.get(until - 1)?);
+            let (first, last) = (parts.get(from)?, parts.get(until - 1)?);
             Some((parse_stamp(&text[begin(first)..begin(last) + last.len()])?, (from, until)))
         };
         let search = || {
-            let count = words.len();
+            let count = parts.len();
             let windows = (1..=count).rev().flat_map(|length| (0..=count - length).map(move |at| (at, at + length)));
             windows.into_iter().find_map(read)
         };
@@ -77,7 +77,7 @@ impl PrefixReader {
         self.window = stamp.map(|(_, window)| window);
         let taken = self.window.map_or(0..0, |(from, until)| from..until);
         let is_name = |word: &&str| word.starts_with(|c: char| c.is_ascii_alphabetic());
-        let remaining = words.iter().enumerate().filter(|(index, _)| !taken.contains(index));
+        let remaining = parts.iter().enumerate().filter(|(index, _)| !taken.contains(index));
         let name: Vec<&str> = remaining.map(|(_, word)| word.trim_end_matches(':')).filter(is_name).collect();
         let source = self.source(&name.join(" "));
         (stamp.map(|(stamp, _)| stamp), source)

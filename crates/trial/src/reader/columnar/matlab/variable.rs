@@ -39,12 +39,12 @@ pub struct OtherVariable {
 pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
 
 /// Name of a cell array in messages.
-pub const CELL: &str = "a cell array";
+pub const CELL_ARRAY: &str = "a cell array";
 
 /// Name of a class without numbers in messages.
 pub fn class_name(class: u32) -> &'static str {
     match class {
-        1 => CELL,
+        1 => CELL_ARRAY,
         2 => "a structure",
         4 => "text",
         5 => "a sparse matrix",

@@ -1,4 +1,4 @@
-//! Residual analysis of the fitted records: whiteness and bands under the noise law, and the verdict on the remainder.
+//! Residual analysis of the fitted records: whiteness and bands under the noise law, and its verdict.
 
 use estimation::residuals::{GappedSeries, constant_variance_p_value, whiteness_test};
 use trial::Trial;
@@ -9,8 +9,8 @@ use crate::full::FullModel;
 use crate::location::Location;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
+use crate::residual_peak::{ResidualPeak, residual_peak};
 use crate::rudder::RudderNoise;
-use crate::signature::{Signature, signature};
 use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
@@ -40,9 +40,9 @@ impl Innovations {
     }
 }
 
-/// Judgement of the residual that the structures leave: noise, credible, or unexplained.
+/// Residual analysis of the structures: noise, credible, or unexplained residual (Ljung 1999, chapter 16).
 #[derive(Debug, Clone)]
-pub struct Remainder {
+pub struct ResidualAnalysis {
     /// `true` if the noise law describes the residual and its bands cover the records.
     pub is_noise: bool,
     /// `true` if the noise law describes the residual, or the structures replay better than the base; otherwise
@@ -50,8 +50,8 @@ pub struct Remainder {
     pub is_credible: bool,
     /// `true` if the residual is neither random nor of a searched shape.
     pub is_unexplained: bool,
-    /// Location of a residual that is more than noise.
-    pub signature: Option<Signature>,
+    /// Peak of a residual that is more than noise; `None` for noise.
+    pub residual_peak: Option<ResidualPeak>,
 }
 
 /// Minimum unexplained residual, relative to the error of the base.
@@ -60,7 +60,7 @@ const MIN_UNEXPLAINED_RATIO: f64 = 0.3;
 /// Minimum unexplained residual, in standard deviations of the white noise.
 const MIN_UNEXPLAINED_SD: f64 = 1.5;
 
-impl Remainder {
+impl ResidualAnalysis {
     /// Analyses the residual of the most probable structure and of the average.
     pub fn new(
         problem: &FittedRecords,
@@ -72,7 +72,7 @@ impl Remainder {
         rudder_noises: &[Option<RudderNoise>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
-            return Self { is_noise: true, is_credible: true, is_unexplained: false, signature: None };
+            return Self { is_noise: true, is_credible: true, is_unexplained: false, residual_peak: None };
         };
         let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
@@ -94,23 +94,23 @@ impl Remainder {
         let is_calm = location.moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
-        let signature = is_left.then(|| worst_signature(identification, trials)).flatten();
-        Self { is_noise, is_credible, is_unexplained, signature }
+        let residual_peak = is_left.then(|| largest_residual_peak(identification, trials)).flatten();
+        Self { is_noise, is_credible, is_unexplained, residual_peak }
     }
 }
 
-/// Signature of the residual in the record with the largest error.
-fn worst_signature(identification: &[RecordComparison], trials: &[Trial]) -> Option<Signature> {
+/// Peak of the residual in the record with the largest error.
+fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) -> Option<ResidualPeak> {
     let error = |number: usize| identification[number].after.errors.heading;
     let number = (0..identification.len()).max_by(|&a, &b| error(a).total_cmp(&error(b)))?;
     let (ReplayResult { replay, .. }, trial) = (&identification[number].after, &trials[number]);
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = first..first + replay.time.len();
     let (heading, rudder) = (&trial.heading()[rows.clone()], &trial.rudder()[rows]);
-    Some(signature(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
+    Some(residual_peak(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
-/// Innovations at the same times with other values.
+/// Innovations at the same times with the given values.
 fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
     all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }

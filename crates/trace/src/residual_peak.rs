@@ -1,10 +1,10 @@
-//! Location of a residual within a record: time, frequency, heading, side of the rudder.
+//! Peak of a residual within a record: in time, frequency, heading and side of the rudder.
 
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 
-/// Time span, frequency, headings and rudder side at which the residual of a record is largest.
+/// Peak of the residual of a record: time span, frequency, headings and rudder side at which it is largest.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Signature {
+pub struct ResidualPeak {
     /// Index of the record.
     pub record: usize,
     /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
@@ -14,24 +14,26 @@ pub struct Signature {
     /// Quarter of the headings (rad) with the largest root mean square, and its value, rad.
     pub heading: ([f64; 2], f64),
     /// Root mean square with the rudder to port and to starboard, rad.
-    pub side: [f64; 2],
+    pub side_rms: [f64; 2],
     /// Root mean square over the record, rad.
-    pub all: f64,
+    pub rms: f64,
 }
 
-/// Windows per record, and bands of headings.
-const PARTS: usize = 8;
-const BANDS: usize = 4;
+/// Number of windows per record.
+const WINDOWS_PER_RECORD: usize = 8;
 
-/// Signature of the residual of one record; the slices are rows of the record.
-pub fn signature(
+/// Number of bands of headings.
+const HEADING_BANDS: usize = 4;
+
+/// Peak of the residual (rad) of one record: time (s), residual, heading and rudder (rad) by row, `spacing` in s.
+pub fn residual_peak(
     number: usize,
     time: &[f64],
     residual: &[f64],
     heading: &[f64],
     rudder: &[f64],
     spacing: f64,
-) -> Signature {
+) -> ResidualPeak {
     let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
     let rms = |rows: &[usize]| {
         if rows.is_empty() {
@@ -39,9 +41,9 @@ pub fn signature(
         }
         (rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
     };
-    let all = rms(&rows);
-    let total = all * all * rows.len() as f64;
-    let length = (rows.len() / PARTS).max(1);
+    let whole = rms(&rows);
+    let total = whole * whole * rows.len() as f64;
+    let length = (rows.len() / WINDOWS_PER_RECORD).max(1);
     // Cumulative Σ e², so that a window is a difference of two sums.
     let mut sums = vec![0.0];
     sums.extend(rows.iter().scan(0.0, |sum, &row| {
@@ -62,12 +64,12 @@ pub fn signature(
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&a, &b| heading[a].total_cmp(&heading[b]));
     let largest = by_heading
-        .chunks(rows.len().div_ceil(BANDS).max(1))
+        .chunks(rows.len().div_ceil(HEADING_BANDS).max(1))
         .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or(([0.0; 2], 0.0));
     let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
-    Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all }
+    ResidualPeak { record: number, span, line, heading: largest, side_rms: [on(-1.0), on(1.0)], rms: whole }
 }
 
 #[cfg(test)]
@@ -80,8 +82,8 @@ mod tests {
         let rows = 400_000;
         let time: Vec<f64> = (0..rows).map(f64::from).collect();
         let residual: Vec<f64> = (0..rows).map(|k| if (100_000..150_000).contains(&k) { 2.0 } else { 1.0 }).collect();
-        let described = signature(0, &time, &residual, &time, &time, 1.0);
-        assert_eq!(described.span.0, [100_000.0, 149_999.0]);
-        assert!((described.span.1 - 200.0 / 550.0).abs() < 1e-9);
+        let peak = residual_peak(0, &time, &residual, &time, &time, 1.0);
+        assert_eq!(peak.span.0, [100_000.0, 149_999.0]);
+        assert!((peak.span.1 - 200.0 / 550.0).abs() < 1e-9);
     }
 }

@@ -8,9 +8,9 @@ pub(super) const PER_DEGREE: f64 = 1.0 / DEGREE;
 /// Inverse of a square degree, 1/rad².
 pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 
-/// Entry of a scenario file that sets a parameter.
+/// Number of a scenario file that sets a parameter of an effect: key, unit, conversion and default.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FileNumber {
+pub struct ScenarioNumber {
     /// Key below the effect; it ends in the unit.
     pub key: &'static str,
     /// Size of that unit in SI and radians.
@@ -18,14 +18,14 @@ pub struct FileNumber {
     /// Meaning, for the reference of keys.
     pub meaning: &'static str,
     /// Conversion from the entry to the parameter.
-    pub role: FileRole,
+    pub role: NumberConversion,
     /// Default; `None` for a required entry.
     pub default: Option<f64>,
 }
 
 /// Conversion from an entry of a scenario file to a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FileRole {
+pub enum NumberConversion {
     /// Entry used directly as the parameter.
     Value,
     /// Entry divided by T: files use T r' + r, models r'.

@@ -134,10 +134,10 @@ mod tests {
     #[test]
     fn errors_survive_the_change_of_parameters() {
         let sd = [0.004, 0.9, 0.002];
-        let check = |found: &Estimate| {
-            for (found, expected) in [found.K(), found.T(), found.rudder_bias()].iter().zip(sd) {
-                assert_relative_eq!(found.sd.expect("given"), expected, max_relative = 1e-12);
-                assert!(found.ci95.is_some());
+        let check = |estimate: &Estimate| {
+            for (estimate, expected) in [estimate.K(), estimate.T(), estimate.rudder_bias()].iter().zip(sd) {
+                assert_relative_eq!(estimate.sd.expect("given"), expected, max_relative = 1e-12);
+                assert!(estimate.ci95.is_some());
             }
         };
         let alone = estimate(OutsideErrors::Deviations(sd.map(Some)));
@@ -181,8 +181,8 @@ mod tests {
             OutsideErrors::Covariance(beyond),
         ];
         for errors in none {
-            let found = estimate(errors);
-            assert_eq!([found.K().sd, found.T().sd, found.rudder_bias().sd], [None; 3], "{errors:?}");
+            let estimate = estimate(errors);
+            assert_eq!([estimate.K().sd, estimate.T().sd, estimate.rudder_bias().sd], [None; 3], "{errors:?}");
         }
     }
 

@@ -12,7 +12,7 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-7;
 ///
 /// All columns have one length, a multiple of [`LANES`]; the padding holds zeros.
 #[derive(Debug, Clone, Default)]
-pub struct Nodes {
+pub struct FoldedRows {
     /// Time u from the middle, s.
     pub time: Vec<f64>,
     /// Even part of the signal.
@@ -29,7 +29,7 @@ pub struct Nodes {
     pub used: usize,
 }
 
-impl Nodes {
+impl FoldedRows {
     /// Folded rows of a record of `values` at `time` (s, increasing, equal lengths, at least 2).
     pub fn from_rows(time: &[f64], values: &[f64]) -> Self {
         let rows = time.len();

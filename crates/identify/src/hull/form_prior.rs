@@ -70,13 +70,13 @@ impl HullFormPrior {
         let particulars = particulars
             .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.with_missing_from(&trial.particulars)));
         let after_trials = |form: HullForm| {
-            let mut expected = Self { particulars, ..Self::from_form(form) };
-            let same_form = earlier.iter().filter(|hull| hull.form.as_str() == expected.form.as_str());
+            let mut prior = Self { particulars, ..Self::from_form(form) };
+            let same_form = earlier.iter().filter(|hull| hull.form.as_str() == prior.form.as_str());
             if let Some(ship) = particulars {
                 let all: Vec<&EarlierHull> = same_form.collect();
-                expected.add(&ship, &all);
+                prior.add(&ship, &all);
             }
-            expected
+            prior
         };
         HullForm::candidates(particulars.as_ref()).into_iter().map(after_trials).collect()
     }
@@ -125,7 +125,7 @@ impl EarlierHull {
     ///
     /// Coefficients of a single trial are left out, as are coefficients of friction at another scale, except through
     /// their correlations.
-    fn information(&self, expected: &HullFormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    fn information(&self, prior: &HullFormPrior, ship: &HullParticulars) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let likeness = Likeness::from_particulars(&self.particulars, ship);
         let before = self.form.coefficients();
         let of_ship = |key: &str| !is_trial_specific(key) && (likeness == Likeness::SameShip || !is_frictional(key));
@@ -150,7 +150,7 @@ impl EarlierHull {
             }
         }
         // For the other ship the departure counts from the prior of her particulars: D s + D μ₁ = D μ₀.
-        let carried = self.carried(expected, ship, before);
+        let carried = self.carried(prior, ship, before);
         vector += &precision * in_root(DVector::from_fn(count, |i, _| carried[kept[i]]))?;
         let weight = likeness.factor().powi(-2);
         let vector = root.tr_solve_lower_triangular(&vector)? * weight;
@@ -168,12 +168,12 @@ impl EarlierHull {
     }
 
     /// Prior means before the earlier trials, moved by the change of the formulas with the particulars.
-    fn carried(&self, expected: &HullFormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
+    fn carried(&self, prior: &HullFormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
         // A particular that only one ship declares has no effect.
         let filled = self.particulars.with_missing_from(ship);
         let forms = HullForm::candidates(Some(&filled));
         let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullForm::coefficients);
-        let generic = expected.form.coefficients();
+        let generic = prior.form.coefficients();
         let moved = |(place, coefficient): (usize, &HullCoefficient)| {
             coefficient.mean + of_filled.as_ref().map_or(0.0, |filled| generic[place].mean - filled[place].mean)
         };

@@ -36,8 +36,8 @@ pub fn failure_entry(method: &str, error: &IdentifyError) -> MethodEntry {
     MethodEntry { method: method.to_owned(), reason, failure, ..MethodEntry::default() }
 }
 
-/// Entry of a result, and the estimate unless the fit failed.
-pub fn entry(
+/// Document entry of one method, `label`, and its estimate; `None` for a failed fit.
+pub fn method_entry(
     label: &str,
     answer: Result<Estimate, IdentifyError>,
     trials: &[Trial],
