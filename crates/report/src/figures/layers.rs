@@ -356,12 +356,12 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
 
 /// Writes the words of a layer next to its points, on the other side if they would leave the panel.
 fn draw_words(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Words(colour, corner, words) = &layer.kind else { return Ok(()) };
+    let LayerKind::Words(corner, words) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
     for ((x, y), words) in layer.curve.pairs().zip(words) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine { colour: *colour, ..TextLine::new(words, theme.small_font, HPos::Left) };
+        let text = TextLine::new(words, theme.small_font, HPos::Left);
         let left = x - right - text.width();
         let fits_right = x + right + text.width() < chart.rect.right();
         let is_right = left < chart.rect.x || corner.is_right && fits_right;
