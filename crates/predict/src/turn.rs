@@ -19,7 +19,7 @@ const MIN_HELD: f64 = 0.8;
 const EXTENSION: f64 = 2.0;
 
 /// Change of heading at which a track ends, rad: one and a half circles.
-const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
+pub(crate) const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
 
 /// Assumed duration of a record of unknown length and speed, in timescales of the ship.
 const DEFAULT_TIMESCALES: f64 = 40.0;

@@ -21,6 +21,7 @@ use trial::imo::CriterionUnit;
 
 use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
+use super::predict_page::heading_error;
 use super::record_figures::{rudder, stability, steady_turns};
 
 /// Number of ship symbols along a track.
@@ -126,8 +127,8 @@ fn first_figures(prediction: &Prediction) -> String {
 
 /// Finding: coverage of the band and heading error of a replayed record.
 fn inside(replayed: &RecordReplay) -> String {
-    let [share, rmse] = [fixed(100.0 * replayed.band_coverage_90, 0), significant(replayed.heading_rmse_deg, 2)];
-    format!("The 90 % band holds {share} % of the headings; heading error of the most probable ship {rmse}° (rms)")
+    let share = fixed(100.0 * replayed.band_coverage_90, 0);
+    format!("The 90 % band holds {share} % of the headings; most probable ship: {}", heading_error(replayed))
 }
 
 /// Tactical diameter of a recorded turn and of its prediction; without it, the heading error.
@@ -251,7 +252,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
-            let mut items = interval(&figure.interval, false);
+            let mut items = interval(&figure.interval, replayed.extrapolated);
             // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
