@@ -172,7 +172,7 @@ fn a_current_is_found_and_taken_out() {
     assert!(run.is_done().err.contains("the ship is steered with her fitted hulls"), "{}", run.err);
     // The page names no folder of this machine and no source, because none is drawn alone.
     let page = desk.text("drawn/report.md");
-    let shown = ["\n\nfit.json: 60 ships", ", extrapolated |", "which adds up over 1.1 rounds: the mean yaw rate is"];
+    let shown = ["\n\nfit.json: 60 ships", "which adds up over 1.1 rounds: the mean yaw rate is"];
     assert!(shown.iter().all(|part| page.contains(part)) && !page.contains("ostly from"), "{page}");
     let figure = desk.text("drawn/replay-still-track.svg");
     assert!(figure.contains("median of the drawn ships") && figure.contains("measured"), "both circles are drawn");
