@@ -63,11 +63,11 @@ pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> O
     });
     let mut beyond: Vec<(&String, f64, f64)> = beyond.collect();
     beyond.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let words = |(name, covered, degrees): &(&String, f64, f64)| {
+    let phrase = |(name, covered, degrees): &(&String, f64, f64)| {
         let [share, off] = [fixed(100.0 * covered, 0), significant(*degrees, 2)];
         format!("{share} % of the headings of {} (heading error {off}° rms)", text(&names::record(name)))
     };
-    let all: Vec<String> = beyond.iter().map(words).collect();
+    let all: Vec<String> = beyond.iter().map(phrase).collect();
     (!all.is_empty()).then(|| format!(" There the 95 % band holds {}.", all.join(" and ")))
 }
 

@@ -75,8 +75,7 @@ fn pale(mut layer: Layer) -> Layer {
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(colour, _) => *colour = QUIET,
-        LayerKind::Record | LayerKind::Words(..) => {}
+        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Words(..) => {}
     }
     layer.within(ASIDE)
 }

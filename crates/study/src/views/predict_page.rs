@@ -112,12 +112,8 @@ fn coverage(replayed: &RecordReplay) -> String {
 /// Heading error of a replay; of more than one round also the error of the mean yaw rate, which adds up to it.
 pub fn heading_error(replayed: &RecordReplay) -> String {
     let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
-    let turned = |headings: &[f64]| Some(headings.last()? - headings.first()?);
-    let [Some(measured), Some(predicted)] =
-        [&replayed.measured, &replayed.heading.most_probable].map(|all| turned(all))
-    else {
-        return error;
-    };
+    let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
+    let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
     if measured.abs() < TAU {
         return error;
     }

@@ -262,29 +262,16 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
 /// Limits of validity of the model, a sentence each.
 fn limits(document: &TraceDocument, curves: &TraceCurves) -> Vec<String> {
     let rudder = fixed(to_deg(document.ship.validity_range.rudder_rad), 0);
-    let beyond = held_out::beyond_fitted_rudder(document, curves).or_else(|| worst_prediction(document));
+    let beyond = held_out::beyond_fitted_rudder(document, curves).unwrap_or_default();
     let speed = document.particulars().map_or_else(
         || String::from("Approach speeds other than that of the records."),
         |ship| format!("Approach speeds other than {} m/s.", significant(ship.speed, 3)),
     );
     vec![
-        format!("Rudder angles above {rudder}°, the largest in the fitted records.{}", beyond.unwrap_or_default()),
+        format!("Rudder angles above {rudder}°, the largest in the fitted records.{beyond}"),
         speed,
         String::from("Weather unlike that of the records, and shallow water."),
     ]
-}
-
-/// Sentence on the held-out record with the largest heading error; `None` without such records.
-fn worst_prediction(document: &TraceDocument) -> Option<String> {
-    let largest = document
-        .trace
-        .error
-        .validation
-        .iter()
-        .max_by(|a, b| a.after.heading_rmse_deg.total_cmp(&b.after.heading_rmse_deg))?;
-    let name = document.records.iter().find(|record| record.file == largest.file).map(|record| &record.name)?;
-    let degrees = significant(largest.after.heading_rmse_deg, 2);
-    Some(format!(" Worst prediction: {}, {degrees}° of heading error (rms).", text(&names::record(name))))
 }
 
 /// Sentences on every localised moment that is not on the list of effects, with `mark` around a formula.
