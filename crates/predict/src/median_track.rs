@@ -4,10 +4,12 @@
 use std::f64::consts::PI;
 
 use crate::interval::band;
-use crate::turn::MAX_TRACK_RAD;
 
 /// Change of heading from one point to the next, rad; 90° and 180° are points.
 const STEP: f64 = PI / 60.0;
+
+/// Change of heading at which a track ends, rad: one and a half circles.
+pub(crate) const MAX_TRACK_RAD: f64 = 3.0 * PI;
 
 /// Track of a turn, a position for every heading; the heading grows with the turn from zero at the execute, rad.
 pub(crate) struct TurnTrack<'a> {

@@ -1,6 +1,8 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
+use std::f64::consts::TAU;
+
 use campaign::curves::degrees;
 use document::names;
 use predict::imo::PredictedCriterion;
@@ -21,7 +23,6 @@ use trial::imo::CriterionUnit;
 
 use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
-use super::predict_page::heading_error;
 use super::record_figures::{rudder, stability, steady_turns};
 
 /// Number of ship symbols along a track.
@@ -123,6 +124,22 @@ fn first_figures(prediction: &Prediction) -> String {
         true => format!("{}: no drawn ship completes it", prediction.kind),
         false => format!("{}: {}", prediction.kind, shown.join(", ")),
     }
+}
+
+/// Heading error of a replay; of more than one round also the error of the mean yaw rate, which adds up to it.
+pub fn heading_error(replayed: &RecordReplay) -> String {
+    let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
+    let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
+    let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
+    if measured.abs() < TAU {
+        return error;
+    }
+    let (rounds, off) = (fixed(measured.abs() / TAU, 1), 100.0 * (predicted / measured - 1.0));
+    let side = if off < 0.0 { "low" } else { "high" };
+    format!(
+        "{error}, which adds up over {rounds} rounds: the mean yaw rate is {} % too {side}",
+        significant(off.abs(), 2)
+    )
 }
 
 /// Finding: coverage of the band and heading error of a replayed record.

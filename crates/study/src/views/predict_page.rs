@@ -1,14 +1,12 @@
 //! Page of a prediction: texts, tables and figures.
 
-use std::f64::consts::TAU;
-
 use askama::Template;
 use document::names;
 use predict::document::{OtherLoading, file_names};
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::markdown::text;
-use report::number::{counted, fixed, significant, with_uncertainty};
+use report::number::{counted, fixed, with_uncertainty};
 use report::{Page, PlacedFigures};
 use ship::angle::to_deg;
 use ship::{Particulars, ShortNumber};
@@ -99,7 +97,7 @@ fn coverage(replayed: &RecordReplay) -> String {
     let mut sentence = format!(
         "{} % of the headings are inside the 90 % band; {}",
         fixed(100.0 * replayed.band_coverage_90, 0),
-        heading_error(replayed)
+        predict_figures::heading_error(replayed)
     );
     if let Some(current) = replayed.current {
         let doubt = current.north_sd_m_s.hypot(current.east_sd_m_s);
@@ -107,22 +105,6 @@ fn coverage(replayed: &RecordReplay) -> String {
         sentence += &format!("; a current of {speed} m/s that sets to {set}° is removed from its track");
     }
     sentence
-}
-
-/// Heading error of a replay; of more than one round also the error of the mean yaw rate, which adds up to it.
-pub fn heading_error(replayed: &RecordReplay) -> String {
-    let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
-    let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
-    let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
-    if measured.abs() < TAU {
-        return error;
-    }
-    let (rounds, off) = (fixed(measured.abs() / TAU, 1), 100.0 * (predicted / measured - 1.0));
-    let side = if off < 0.0 { "low" } else { "high" };
-    format!(
-        "{error}, which adds up over {rounds} rounds: the mean yaw rate is {} % too {side}",
-        significant(off.abs(), 2)
-    )
 }
 
 /// Sentence on the models of a correction.
