@@ -74,7 +74,7 @@ impl Outcome {
         match self {
             Self::Added => "added",
             Self::Alias => "alias",
-            Self::Rejected => "rejected",
+            Self::Rejected => "not named",
             Self::NotObservable => "not observable",
         }
     }

@@ -100,6 +100,21 @@ pub struct ModelWeight {
     pub weight: f64,
 }
 
+/// Names of files for a page, separated by commas: without their folders, which are of one machine; with the last
+/// folder where names are alike.
+pub fn file_names<'a>(files: impl IntoIterator<Item = &'a String, IntoIter: Clone>) -> String {
+    fn end(file: &str, parts: usize) -> &str {
+        let start = file.rmatch_indices(['/', '\\']).nth(parts - 1).map_or(0, |(place, _)| place + 1);
+        &file[start..]
+    }
+    let files = files.into_iter();
+    let name = |file: &'a String| {
+        let alike = files.clone().filter(|other| end(other, 1) == end(file, 1)).count();
+        end(file, alike.min(2))
+    };
+    files.clone().map(name).collect::<Vec<_>>().join(", ")
+}
+
 /// Curves of a prediction, in a file next to the document; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PredictCurves {
@@ -128,9 +143,9 @@ impl PredictDocument {
         self
     }
 
-    /// Files of the models, separated by commas, and the file of the loading to which they are converted.
+    /// Names of the files of the models, and the file of the loading to which they are converted.
     pub fn model_files(&self) -> String {
-        let files = self.models.iter().map(|model| model.file.as_str()).collect::<Vec<_>>().join(", ");
+        let files = file_names(self.models.iter().map(|model| &model.file));
         if self.load.is_some() { format!("{files} at {}", OtherLoading::name(self.load.as_ref())) } else { files }
     }
 }
@@ -140,6 +155,13 @@ mod tests {
     use super::*;
     use crate::testing;
     use crate::{form, imo};
+
+    #[test]
+    fn files_are_named_without_their_folders() {
+        let of = |files: &[&str]| file_names(&files.iter().map(|file| String::from(*file)).collect::<Vec<_>>());
+        assert_eq!(of(&["scratch/a/fit.json"]), "fit.json");
+        assert_eq!(of(&["scratch/a/fit.json", "b/fit.json", "b\\trace.json"]), "a/fit.json, b/fit.json, trace.json");
+    }
 
     #[test]
     fn what_is_written_is_read_again() {

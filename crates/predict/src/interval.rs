@@ -4,6 +4,9 @@ use estimation::statistics::quantile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Maximum width of the 90 % interval that sets the decimals, in widths of the 50 % interval: 2.4 for a normal law.
+const MAX_WIDTHS: f64 = 3.0;
+
 /// Median with the 50 % and 90 % intervals of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PredictionInterval {
@@ -31,9 +34,14 @@ impl PredictionInterval {
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 
-    /// Number of decimals that shows two digits of the width, at most six.
+    /// Number of decimals that shows two digits of the width, at most six. Of a skewed law the 50 % interval counts,
+    /// whose digits the long tail would round away.
     pub fn decimals(&self) -> usize {
-        let width = self.ci90[1] - self.ci90[0];
+        let width = |ends: [f64; 2]| ends[1] - ends[0];
+        let width = match MAX_WIDTHS * width(self.ci50) {
+            most if most > 0.0 => most.min(width(self.ci90)),
+            _ => width(self.ci90),
+        };
         let decimals = if width > 0.0 { (1.0 - width.log10().floor()).max(0.0) } else { 2.0 };
         (decimals as usize).min(6)
     }
@@ -55,6 +63,8 @@ mod tests {
         assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
         assert!(interval.contains_90(0.3) && !interval.contains_90(0.1));
         assert_eq!(PredictionInterval::from_samples(&mut []), None);
+        let skewed = PredictionInterval { median: 0.4, ci50: [0.2, 1.1], ci90: [0.1, 12.0] };
+        assert_eq!((skewed.decimals(), PredictionInterval { ci50: [0.4; 2], ..skewed }.decimals()), (1, 0));
         assert_eq!(PredictionInterval::from_samples(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
     }
 }

@@ -1,12 +1,15 @@
 //! Median turning circle of drawn ships: at every change of heading the median position of the ships that reach it.
 //! Its advance, transfer and tactical diameter are the medians of the samples; no single ship has all three.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use crate::interval::band;
 
 /// Change of heading from one point to the next, rad; 90° and 180° are points.
 const STEP: f64 = PI / 60.0;
+
+/// Change of heading at which a track ends, rad: one and a half circles.
+pub(crate) const MAX_TRACK_RAD: f64 = 3.0 * PI;
 
 /// Track of a turn, a position for every heading; the heading grows with the turn from zero at the execute, rad.
 pub(crate) struct TurnTrack<'a> {
@@ -26,14 +29,15 @@ impl TurnTrack<'_> {
     }
 }
 
-/// Median track of turns to one side (±1), as far as half of them go, at most one round; empty without a turn.
+/// Median track of turns to one side (±1), as far as half of them go and at most as far as a track is shown; empty
+/// without a turn.
 pub(crate) fn median_track(turns: &[TurnTrack], side: f64) -> Vec<[f64; 2]> {
     let place = |point: usize| {
         let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();
         let is_enough = !places.is_empty() && 2 * places.len() >= turns.len();
         is_enough.then(|| [0, 1].map(|axis| band(&mut places.iter().map(|place| place[axis]).collect::<Vec<f64>>())[2]))
     };
-    (0..=(TAU / STEP).round() as usize).map_while(place).collect()
+    (0..=(MAX_TRACK_RAD / STEP).round() as usize).map_while(place).collect()
 }
 
 #[cfg(test)]
@@ -57,5 +61,9 @@ mod tests {
         };
         assert!(is_near(median[30], [2.0, -2.0]) && is_near(median[60], [0.0, -4.0]), "{:?}", median[30]);
         assert!(median_track(&[], 1.0).is_empty());
+        // Two circles are shown as far as a recorded track is.
+        let heading: Vec<f64> = (0..=720).map(|row| f64::from(row).to_radians()).collect();
+        let turn = TurnTrack { heading: &heading, track: &vec![[0.0; 2]; 721] };
+        assert_eq!((median_track(&[turn], 1.0).len() - 1) as f64 * STEP, MAX_TRACK_RAD);
     }
 }

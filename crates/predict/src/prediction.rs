@@ -27,7 +27,7 @@ const MIN_COMPLETED_SHARE: f64 = 0.5;
 
 /// Tolerance of the range of the records: a rudder overshoots its order, and the maximum rate comes from a single
 /// record.
-const TOLERANCE: f64 = 1.05;
+pub const TOLERANCE: f64 = 1.05;
 
 /// Predicted figure of merit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

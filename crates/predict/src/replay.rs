@@ -50,6 +50,9 @@ pub struct RecordReplay {
     pub band_coverage_90: f64,
     /// Root mean square difference between the headings and the most probable ship.
     pub heading_rmse_deg: f64,
+    /// `true` if rudder or yaw rate of the record are beyond the range of the fitted records.
+    #[serde(default)]
+    pub extrapolated: bool,
     /// Current removed from the track.
     pub current: Option<Current>,
     /// Figures of merit that the record shows, by name.
@@ -151,7 +154,7 @@ impl ShipMixture {
         let heading = BandedCurve { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
-        let square: f64 = measured.iter().zip(&heading.most_probable).map(|(x, y)| (x - y).powi(2)).sum();
+        let largest_rates = made.iter().map(SimulatedManoeuvre::max_yaw_rate);
         let (figures, tracks) = match Measured::from_trial(trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => (ships.zig_zag(trial, &zigzag, draws)?, None),
             _ => turns(trial, &most_probable, &made, self.timescale(), current),
@@ -161,7 +164,8 @@ impl ShipMixture {
             name: trial.name().to_owned(),
             rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
             band_coverage_90: held as f64 / rows.len() as f64,
-            heading_rmse_deg: to_deg((square / rows.len() as f64).sqrt()),
+            heading_rmse_deg: to_deg(rms_difference(&measured, &heading.most_probable)),
+            extrapolated: ships.is_extrapolated(trial.largest_rudder(), largest_rates),
             figures,
             tracks,
             current,
@@ -219,6 +223,12 @@ impl ShipMixture {
         let line = StraightLine::through(rows.into_iter().take(count.max(MIN_READINGS)));
         Ok(line.map(|line| [line.at_zero(), (line.slope, line.slope_sd())]))
     }
+}
+
+/// Root mean square difference of two curves at the same rows.
+fn rms_difference(one: &[f64], other: &[f64]) -> f64 {
+    let squares: f64 = one.iter().zip(other).map(|(one, other)| (one - other).powi(2)).sum();
+    (squares / one.len() as f64).sqrt()
 }
 
 /// Comparisons by name.
@@ -336,6 +346,9 @@ mod tests {
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&String> = replayed.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
+        let beyond = testing::record(&mixture, "turning-circle:35", 3, from_deg(0.1), 1.0);
+        let beyond = mixture.replay(&beyond, 50, None).expect("it sails").expect("it begins");
+        assert!(beyond.extrapolated && !replayed.extrapolated, "the records have 20° of rudder");
         for figure in replayed.figures.values() {
             assert!((figure.measured / figure.interval.median - 1.0).abs() < 0.2, "{figure:?}");
         }

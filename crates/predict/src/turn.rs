@@ -9,7 +9,7 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial, ZigZag};
 
 use crate::figures::{self, Characteristics};
-use crate::median_track::{TurnTrack, median_track};
+use crate::median_track::{MAX_TRACK_RAD, TurnTrack, median_track};
 use crate::simulated_manoeuvre::{self, PlanarMotion, SimulatedManoeuvre};
 
 /// Minimum rudder angle of a held rudder, relative to the maximum.
@@ -17,9 +17,6 @@ const MIN_HELD: f64 = 0.8;
 
 /// Extension of the held rudder for ships that turn more slowly than the recorded ship, relative to the recorded time.
 const EXTENSION: f64 = 2.0;
-
-/// Change of heading at which a track ends, rad: one and a half circles.
-const MAX_TRACK_RAD: f64 = 3.0 * std::f64::consts::PI;
 
 /// Assumed duration of a record of unknown length and speed, in timescales of the ship.
 const DEFAULT_TIMESCALES: f64 = 40.0;

@@ -117,7 +117,9 @@ impl Chart {
         pairs: impl IntoIterator<Item = (f64, f64)>,
         stroke: Stroke,
     ) -> PlotResult {
-        let pairs: Vec<(f64, f64)> = pairs.into_iter().collect();
+        // An infinite value is far beyond the panel.
+        let pairs = pairs.into_iter().map(|(x, y)| (x, y.clamp(-f64::MAX, f64::MAX)));
+        let pairs: Vec<(f64, f64)> = pairs.collect();
         let parts = pairs.split(|pair| !self.is_plottable(pair)).filter(|part| part.len() > 1);
         let lines = parts.flat_map(|part| LineSeries::new(part.to_vec(), stroke.style()));
         self.draw(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)

@@ -286,7 +286,7 @@ impl Sheet {
             .y_label_formatter(&up)
             .x_desc(if labelled[1] { &x.side.title } else { "" })
             .y_desc(if labelled[0] { &y.title } else { "" });
-        if x.side.axis.is_names() {
+        if x.side.axis.is_names() && y.axis.is_names() {
             // The cells of a map have their own lines.
             mesh.disable_mesh();
         }

@@ -184,7 +184,7 @@ pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
 /// Check of movement and angle units: heading and rudder move by comparable amounts.
 fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     let (heading_deg, rudder_deg) = (range_deg(trial.heading()), range_deg(trial.rudder()));
-    let largest_deg = to_deg(trial.rudder().iter().fold(0.0, |largest: f64, delta| largest.max(delta.abs())));
+    let largest_deg = to_deg(trial.largest_rudder());
     if heading_deg < MIN_RANGE_DEG && rudder_deg < MIN_RANGE_DEG {
         return Err(Implausible::NothingMoves { heading_deg, rudder_deg });
     }

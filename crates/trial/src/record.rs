@@ -278,6 +278,11 @@ impl Trial {
         self.rudder.rows.values()
     }
 
+    /// Largest rudder angle to either side, rad.
+    pub fn largest_rudder(&self) -> f64 {
+        self.rudder().iter().fold(0.0, |largest, angle| largest.max(angle.abs()))
+    }
+
     /// Rudder as a signal: linear between rows and the [corners](Self::rudder_corners) between them.
     pub fn rudder_signal(&self) -> &Polyline {
         self.rudder.path()

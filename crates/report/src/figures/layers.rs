@@ -356,12 +356,12 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
 
 /// Writes the labels of a layer next to its points, on the other side if they would leave the panel.
 fn draw_labels(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Labels(colour, corner, labels) = &layer.kind else { return Ok(()) };
+    let LayerKind::Labels(corner, labels) = &layer.kind else { return Ok(()) };
     let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
     let down = if corner.is_above { -down } else { down };
     for ((x, y), label) in layer.curve.pairs().zip(labels) {
         let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine { colour: *colour, ..TextLine::new(label, theme.small_font, HPos::Left) };
+        let text = TextLine::new(label, theme.small_font, HPos::Left);
         let left = x - right - text.width();
         let fits_right = x + right + text.width() < chart.rect.right();
         let is_right = left < chart.rect.x || corner.is_right && fits_right;

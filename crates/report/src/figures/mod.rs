@@ -49,6 +49,16 @@ impl Plot {
         drawn.expect("the backend writes into memory, which does not fail")
     }
 
+    /// Remark under the figure; `None` for a zig-zag, which has none.
+    pub fn note(&mut self) -> Option<&mut Option<String>> {
+        match self {
+            Self::Panels(data) => Some(&mut data.note),
+            Self::Rows(data) => Some(&mut data.note),
+            Self::Cells(data) => Some(&mut data.note),
+            Self::ZigZag(_) => None,
+        }
+    }
+
     /// Titles of the numeric axes, without italics: the keys of the limits in a style.
     pub fn axis_titles(&self) -> Vec<String> {
         let rulers: Vec<AxisSpec> = match self {

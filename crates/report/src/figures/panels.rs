@@ -25,17 +25,24 @@ pub struct AxisSpec {
     pub tick_rule: TickRule,
     /// Reach of the axis for wild data; `None`: all data.
     pub reach: Option<AxisReach>,
+    /// Names of the values 0, 1, 2, … in place of numbers; empty for a numeric axis.
+    pub names: Vec<String>,
 }
 
 impl AxisSpec {
     /// Axis over all data.
     pub fn new(title: impl Into<String>, tick_rule: TickRule) -> Self {
-        Self { title: title.into(), tick_rule, reach: None }
+        Self { title: title.into(), tick_rule, ..Self::default() }
     }
 
     /// Axis of decimal numbers.
     pub fn decimal(title: impl Into<String>) -> Self {
         Self::new(title, TickRule::Decimal)
+    }
+
+    /// Axis of names, one unit each.
+    pub fn of_names(names: Vec<String>) -> Self {
+        Self { names, ..Self::default() }
     }
 
     /// Axis of time in seconds.
@@ -71,6 +78,7 @@ impl AxisSpec {
     /// The axis over some data with free space at the ends, and whether data are cut.
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
         match self.tick_rule {
+            _ if !self.names.is_empty() => return (Axis::columns(&self.names), false),
             TickRule::Logarithmic => return (Axis::log_covering(&data.positive()), false),
             TickRule::Percent => return (Axis::linear(-3.0, 103.0, TickRule::Percent), false),
             _ => {}
@@ -160,8 +168,8 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Labels next to the points, all at the same corner.
-    Labels(RGBColor, LabelPlacement, Vec<String>),
+    /// Labels next to the points, all at the same corner, in the colour of text.
+    Labels(LabelPlacement, Vec<String>),
 }
 
 /// One layer of a panel.
@@ -237,7 +245,8 @@ impl Layer {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) => *colour,
+            LayerKind::Labels(..) => crate::palette::INK,
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
@@ -376,5 +385,16 @@ impl Panels {
     /// Panels above each other over time.
     pub fn over_time(rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
         Self::new(Stack::over(AxisSpec::time(), rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_of_names_has_one_unit_each() {
+        let (axis, _) = AxisSpec::of_names(vec!["35/5".into(), "5/1".into()]).axis(&Extents::default(), 0.1);
+        assert_eq!((axis.labels().collect::<Vec<_>>(), axis.ends()), (vec!["35/5", "5/1"], (-0.5, 1.5)));
     }
 }

@@ -8,7 +8,7 @@ use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use super::shared::{BEYOND_AXIS_REMARK, Bars, Reference95, zero_stroke};
 use crate::axis::{Axis, TickRule};
 use crate::backend::PlotResult;
-use crate::canvas::{PagePoint, Stroke, TextLine};
+use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units};
 use crate::chart::{Bar, Chart};
 use crate::drawing::Drawing;
 use crate::fonts::{LINE_SPACING, text_width};
@@ -235,9 +235,13 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     for (row, items) in column.rows.iter().enumerate() {
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
         let y = chart.page_y(row as f64).unwrap_or(f64::NAN);
-        for (number, width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
+        for ((number, look), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
             chart.canvas.text_on_ground((right, y), number)?;
             right -= width;
+            if let Some(look) = look.filter(|_| widths.len() > 1) {
+                let place = page_units((right + theme.small_font, y));
+                chart.canvas.draw_elements(marker(place, 0.8 * theme.marker, look))?;
+            }
         }
     }
     chart.frame(theme)?;
@@ -299,29 +303,28 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     Ok(true)
 }
 
-/// Numbers of a row: of marks and distributions in their colour.
-fn numbers(items: &[RowItem], theme: &Theme) -> Vec<TextLine> {
-    let number = |item: &RowItem| {
-        let colour = match &item.kind {
-            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => look.colour,
-            _ => INK,
-        };
-        Some(TextLine { colour, ..TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right) })
+/// Numbers of a row, each with the look of its mark.
+fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a Look>)> {
+    let number = |item: &'a RowItem| {
+        let look = if let RowKind::Mark(look, ..) = &item.kind { Some(look) } else { None };
+        Some((TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right), look))
     };
     items.iter().filter_map(number).collect()
 }
 
-/// Widths of the numbers at the right end of the rows, in columns: the last number of every row in the last.
+/// Widths of the numbers at the right end of the rows, in columns: the last number of every row in the last. Of several
+/// columns each has room for a mark.
 fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
     let mut widths: Vec<f64> = Vec::new();
     for items in &column.rows {
-        for (place, number) in numbers(items, theme).iter().rev().enumerate() {
+        for (place, (number, _)) in numbers(items, theme).iter().rev().enumerate() {
             widths.resize(widths.len().max(place + 1), 0.0);
             widths[place] = widths[place].max(number.width() + theme.small_font);
         }
     }
     widths.reverse();
-    widths
+    let marked = if widths.len() > 1 { theme.small_font } else { 0.0 };
+    widths.iter().map(|width| width + marked).collect()
 }
 
 /// Writes a text to the right of two ends, or to the left if the frame is too near.
@@ -358,4 +361,22 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
     }
     let median = Look { hollow: true, ..CurveOrigin::Truth.look() };
     chart.marker(None, q[2], y, 0.6 * theme.marker, &median)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::palette::QUIET;
+
+    #[test]
+    fn numbers_are_dark_and_have_room_for_their_marks() {
+        let look = Look { colour: QUIET, ..CurveOrigin::Truth.look() };
+        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::below("", look, 1.0, None) };
+        let column = |items: usize| RowsColumn { rows: vec![vec![item.clone(); items]], ..RowsColumn::default() };
+        let theme = Theme::screen();
+        let [single, both] = [1, 2].map(|items| number_widths(&column(items), &theme));
+        assert!(both.len() == 2 && both[0] > single[0]);
+        let is_dark = |(number, own): (TextLine, Option<&Look>)| number.colour == INK && own == Some(&look);
+        assert!(numbers(&column(2).rows[0], &theme).into_iter().all(is_dark));
+    }
 }

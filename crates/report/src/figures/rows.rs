@@ -48,7 +48,7 @@ pub struct RowItem {
     pub place: RowPlace,
     /// `true` if the item may be cut when it leaves the range of all other data by more than that range.
     pub soft: bool,
-    /// Number written at the right end of the row, in the colour of a mark.
+    /// Number written at the right end of the row; if rows have several, behind their marks.
     pub number: Option<String>,
 }
 

@@ -2,11 +2,10 @@
 
 use plotters::style::text_anchor::HPos;
 
-use super::panels::{Layer, LayerKind, Panels, Stack};
+use super::panels::{Layer, Panels, Stack};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
-use crate::curve::PlotCurve;
 use crate::markup::is_markup;
 use crate::number::significant;
 use crate::theme::Theme;
@@ -33,13 +32,7 @@ fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
         true => Some((chart.page_x(x)?, chart.rect.y)),
         false => chart.inside(x, y),
     };
-    let last = layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0));
-    let LayerKind::Band(upper, ..) = &layer.kind else { return last };
-    // A band is named in the middle of its height in the frame.
-    let up = |curve: &PlotCurve| curve.pairs().last().and_then(|(x, y)| chart.page_point(x, y));
-    let [(x, low), (_, high)] = [up(&layer.curve)?, up(upper)?];
-    let [low, high] = [low, high].map(|y| y.clamp(chart.rect.y, chart.rect.bottom()));
-    Some((x, 0.5 * (low + high)))
+    layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// Writes the names right of the last panel of every row of `count`; returns the names without a point in the frame,

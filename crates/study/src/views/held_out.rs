@@ -4,10 +4,12 @@ use ::trace::replay_errors::HORIZONS_S;
 use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
+use predict::prediction::TOLERANCE;
 use report::figures::{
     AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack, TickRule,
 };
-use report::number::{counted, significant};
+use report::markdown::text;
+use report::number::{counted, fixed, significant};
 use report::{CurveOrigin, PageFigure};
 
 use super::trace_figures::{ratio, replays_by_origin};
@@ -48,6 +50,25 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
     let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
                    not fitted; degrees are root mean squares. The worst predicted record comes first.";
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
+}
+
+/// Sentence on the band of held-out records with more rudder than the fitted ones, the least covered first; `None`
+/// without such a record.
+pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> Option<String> {
+    let fitted = document.ship.validity_range.rudder_rad;
+    let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
+    let beyond = all.zip(&document.trace.error.validation).filter_map(|((entry, record), errors)| {
+        let is_beyond = record.trial.largest_rudder() > TOLERANCE * fitted;
+        Some((&entry.name, errors.after.band_coverage_95.filter(|_| is_beyond)?, errors.after.heading_rmse_deg))
+    });
+    let mut beyond: Vec<(&String, f64, f64)> = beyond.collect();
+    beyond.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let phrase = |(name, covered, degrees): &(&String, f64, f64)| {
+        let [share, off] = [fixed(100.0 * covered, 0), significant(*degrees, 2)];
+        format!("{share} % of the headings of {} (heading error {off}° rms)", text(&names::record(name)))
+    };
+    let all: Vec<String> = beyond.iter().map(phrase).collect();
+    (!all.is_empty()).then(|| format!(" There the 95 % band holds {}.", all.join(" and ")))
 }
 
 /// Figure of the errors on held-out records, from zero, so that ratios are visible; `None` if there are none.

@@ -8,7 +8,7 @@ use report::figures::{
 };
 use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
-use report::{CurveOrigin, PlotCurve};
+use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
@@ -17,73 +17,67 @@ use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit};
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Factor beyond the greatest finite value at which an infinite one ends a band.
-const BEYOND: f64 = 10.0;
-
-/// Remark on the number of trials behind every value; `None` if it varies or the trials are measured records.
-pub fn trials(design: &Design) -> Option<String> {
+/// Remark on the simulated trials behind every value, with their number if it is the same for all.
+pub fn trials(design: &Design) -> String {
     let counts = distinct(design.cells.iter().map(|cell| cell.trials.end - cell.trials.start));
-    let [count] = counts[..] else { return None };
+    let [count] = counts[..] else { return String::from(SIMULATED) };
     let each = if design.cells.len() > 1 { " each" } else { "" };
-    (!design.is_measured()).then(|| format!("{}{each}.", counted(count, "trial")))
+    format!("{}{each}.", counted(count, "simulated trial"))
 }
 
-/// A chart as the key figure of a study, with a remark on its trials.
-pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight, trials: Option<String>) -> Plot {
-    let (remark, note) = match &mut plot {
-        Plot::Panels(data) => (of_panels(data, highlight), &mut data.note),
-        Plot::Rows(data) => (highlight_rows(data, highlight), &mut data.note),
-        Plot::Cells(data) => {
-            of_cells(data, highlight);
-            (None, &mut data.note)
-        }
-        Plot::ZigZag(_) => return plot,
+/// Remark on the trials of a figure.
+pub const SIMULATED: &str = "Simulated trials.";
+
+/// Begins the remarks under a figure with the remark on its trials; a zig-zag has it in its caption.
+pub fn remark_on_trials(figure: &mut PageFigure, remark: &str) {
+    match figure.plot.note() {
+        Some(note) => *note = Some([Some(remark), note.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ")),
+        None => figure.caption += &format!(" {remark}"),
+    }
+}
+
+/// A chart as the key figure of a study.
+pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
+    let remark = match &mut plot {
+        Plot::Panels(data) => of_panels(data, highlight),
+        Plot::Rows(data) => highlight_rows(data, highlight),
+        Plot::Cells(data) => of_cells(data, highlight),
+        Plot::ZigZag(_) => None,
     };
     let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
-    let remarks: Vec<String> = trials.into_iter().chain(over_bound).chain(note.take()).chain(remark).collect();
-    *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
+    if let Some(note) = plot.note() {
+        let remarks: Vec<String> = over_bound.into_iter().chain(note.take()).chain(remark).collect();
+        *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
+    }
     plot
 }
 
-/// Layers that are not highlighted: a single one in pale colours, several as one band from the least to the greatest
-/// value at each point.
+/// Layers that are not highlighted, in pale colours. Several share one name, at the line that ends in their middle.
 fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
+    let mut layers: Vec<Layer> = quiet.into_iter().map(pale).collect();
     if names.len() < 2 {
-        return quiet.into_iter().map(pale).collect();
+        return layers;
     }
-    if quiet.len() < 2 {
-        return quiet.into_iter().map(|layer| Layer { name: None, ..pale(layer) }).collect();
+    let end = |layer: &Layer| layer.curve.finite().last().map_or(f64::INFINITY, |(_, y)| y);
+    layers.sort_by(|a, b| end(a).total_cmp(&end(b)));
+    let middle = layers.len().saturating_sub(1) / 2;
+    for (number, layer) in layers.iter_mut().enumerate() {
+        layer.name = (number == middle).then(|| counted(names.len() as u64, "other method"));
     }
-    let mut points: Vec<(f64, f64)> = quiet.iter().flat_map(|layer| layer.curve.pairs()).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // Errors beyond the axis are infinite.
-    let finite = points.iter().map(|(_, y)| *y).filter(|y| y.is_finite());
-    let Some(most) = finite.reduce(f64::max) else { return Vec::new() };
-    let edge = |pick: fn(f64, f64) -> f64| {
-        let groups = points.chunk_by(|a, b| a.0 == b.0);
-        let ends = groups
-            .filter_map(|group| Some((group[0].0, group.iter().map(|(_, y)| y.min(BEYOND * most)).reduce(pick)?)));
-        let (x, y) = ends.unzip();
-        PlotCurve { x, y }
-    };
-    let name = format!("{}, range", counted(names.len() as u64, "other method"));
-    vec![Layer::band(name, [edge(f64::min), edge(f64::max)], RECORD, 0.2).within(ASIDE)]
+    layers
 }
 
 /// A layer in pale colours, which keeps its name.
-fn pale(layer: Layer) -> Layer {
-    let mut kind = layer.kind;
-    match &mut kind {
-        LayerKind::Line(pen) => pen.colour = QUIET,
-        LayerKind::Marks(Marks { joined: Some(pen), .. }) => {
-            kind = LayerKind::Line(Pen { colour: QUIET, ..pen.width(0.7) });
+fn pale(mut layer: Layer) -> Layer {
+    match &mut layer.kind {
+        LayerKind::Line(_) | LayerKind::Marks(Marks { joined: Some(_), .. }) => {
+            layer.kind = LayerKind::Line(Pen { opacity: 0.45, ..Pen::new(RECORD).width(0.6) });
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(colour, _) | LayerKind::Labels(colour, ..) => *colour = QUIET,
-        LayerKind::Record => {}
+        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(..) => {}
     }
-    Layer { kind, ..layer }.within(ASIDE)
+    layer.within(ASIDE)
 }
 
 /// Highlights layers; returns a remark on methods that are missing in a panel.
@@ -147,7 +141,9 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
     let mut values = Vec::new();
     let mut is_above = true;
     for layer in layers {
-        let LayerKind::Marks(Marks { look, .. }) = &layer.kind else { continue };
+        if !matches!(layer.kind, LayerKind::Marks(_)) {
+            continue;
+        }
         let curve: Vec<(f64, f64)> = layer.curve.finite().collect();
         let before = written.len();
         for (place, &(x, y)) in curve.iter().enumerate().filter(|(_, (x, _))| points.contains(x)) {
@@ -157,11 +153,8 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
             }
             // Above a rising curve there is room to the left, below it to the right.
             let is_rising = curve[(place + 1).min(curve.len() - 1)].1 > curve[place.saturating_sub(1)].1;
-            let labels = LayerKind::Labels(
-                look.colour,
-                LabelPlacement { is_above, is_right: is_above != is_rising },
-                vec![text.1.clone()],
-            );
+            let placement = LabelPlacement { is_above, is_right: is_above != is_rising };
+            let labels = LayerKind::Labels(placement, vec![text.1.clone()]);
             values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, labels));
             written.push(text);
         }
@@ -184,7 +177,7 @@ fn keep_t(stack: &mut Stack) {
 
 /// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
 /// colon become one row, their mean.
-fn of_cells(data: &mut CellMap, highlight: &Highlight) {
+fn of_cells(data: &mut CellMap, highlight: &Highlight) -> Option<String> {
     let (about, rows) = (&highlight.methods(), &highlight.rows);
     data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
     let is_empty = |column: &usize| {
@@ -205,7 +198,7 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) {
         }
     }
     if rows.is_empty() || are_cells {
-        return;
+        return None;
     }
     let kind = |name: &str| name.split_once(": ").map_or(name, |(kind, _)| kind).to_owned();
     let is_about = |name: &String| rows.contains(name) || rows.iter().any(|row| name.ends_with(&format!(": {row}")));
@@ -222,6 +215,7 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) {
         *panel = parts.iter().map(|(_, members)| mean_row(panel, members)).collect();
     }
     data.rows = parts.into_iter().map(|(name, _)| name).collect();
+    None
 }
 
 /// Mean of rows of a map, column by column; a single row is unchanged.
@@ -267,9 +261,7 @@ mod tests {
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..Stack::default()
         };
-        let Plot::Panels(data) = highlighted_chart(Panels::new(stack).into(), &about_output_error(), None) else {
-            panic!()
-        };
+        let Plot::Panels(data) = highlighted_chart(Panels::new(stack).into(), &about_output_error()) else { panic!() };
         let panels = &data.stacks[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
@@ -296,7 +288,7 @@ mod tests {
             columns: vec![column("error of K [%]"), column("error of T [%]")],
             ..NamedRows::default()
         };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &about_output_error(), None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &about_output_error()) else { panic!() };
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
@@ -316,7 +308,7 @@ mod tests {
         let rows =
             NamedRows { names: vec!["5/5".into(), "20/20".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
             RowItem { kind: RowKind::Mark(drawn, ..), number, .. } => {
                 (drawn.colour == tint(look.colour), number.as_deref())
@@ -349,9 +341,7 @@ mod tests {
             over_bound: true,
         };
         let data = Panels { note: Some(String::from("Marks.")), ..Panels::new(stack) };
-        let Plot::Panels(data) = highlighted_chart(data.into(), &highlight, Some(String::from("9 trials."))) else {
-            panic!()
-        };
+        let Plot::Panels(data) = highlighted_chart(data.into(), &highlight) else { panic!() };
         let layers = &data.stacks[0].panels[0].layers;
         let labels = layers.iter().filter_map(|layer| match &layer.kind {
             LayerKind::Labels(.., labels) => Some((layer.curve.x.clone(), labels.clone())),
@@ -361,12 +351,12 @@ mod tests {
             labels.collect::<Vec<_>>(),
             [(vec![2.0], vec![String::from("0.12 %")]), (vec![2.0], vec![String::from("0.13 %")])]
         );
-        // Several that are not highlighted are one band; infinite errors are beyond its greatest finite value.
-        assert_eq!(layers[0].name.as_deref(), Some("2 other methods, range"));
-        let LayerKind::Band(upper, ..) = &layers[0].kind else { panic!() };
-        assert_eq!((&layers[0].curve.y, &upper.y), (&vec![9.0, 27.0], &vec![270.0, 270.0]));
-        assert!(paled(vec![layer("srivc", f64::INFINITY); 2], &["srivc".into(), "other".into()]).is_empty());
-        assert_eq!(data.note.as_deref(), Some("9 trials. ×: times the Cramér–Rao bound, methods in colour. Marks."));
+        // Those that are not highlighted are pale lines with one name.
+        let pale = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Line(pen) if pen.colour == RECORD));
+        let pale: Vec<_> = pale.map(|layer| (layer.name.as_deref(), layer.curve.y.clone(), layer.room)).collect();
+        let others = [(Some("2 other methods"), vec![9.0, 27.0]), (None, vec![f64::INFINITY; 2])];
+        assert_eq!(pale, others.map(|(name, y)| (name, y, Some(ASIDE))));
+        assert_eq!(data.note.as_deref(), Some("×: times the Cramér–Rao bound, methods in colour. Marks."));
         assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
 
@@ -382,12 +372,12 @@ mod tests {
             note: None,
         };
         let highlight = Highlight { rows: vec![String::from("tug")], ..Highlight::default() };
-        let Plot::Cells(data) = highlighted_chart(map.clone().into(), &highlight, None) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.clone().into(), &highlight) else { panic!() };
         assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
         let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
         assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
         let highlight = Highlight { rows: vec![String::from("known: c, right")], ..Highlight::default() };
-        let Plot::Cells(data) = highlighted_chart(map.into(), &highlight, None) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.into(), &highlight) else { panic!() };
         assert_eq!(
             data.panels[0].1.iter().map(|row| row[0].outline).collect::<Vec<_>>(),
             [None, None, Some(Outline::Finding), None]
@@ -403,7 +393,7 @@ mod tests {
         let column = RowsColumn { rows: vec![violin(-20.2), violin(1.0)], ..RowsColumn::default() };
         let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, None) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight) else { panic!() };
         let text = |row: usize| data.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("−20 (−30 to 5.0)"), Some("1.0 (−30 to 5.0)")));
     }

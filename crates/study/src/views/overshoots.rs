@@ -34,7 +34,6 @@ pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves
         // The limits are for ships; for a model, the record does not state the length of the full-size ship.
         let ship = record.particulars().filter(|ship| ship.length >= imo::MIN_LENGTH_M);
         let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
-        let rudder = trial.rudder().iter().fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
         for (number, word) in [(0, "first"), (1, "second")] {
             let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.overshoots_by_execute().nth(number)??.angle.value));
             let Some(measured) = angle(&zigzag) else { continue };
@@ -43,7 +42,7 @@ pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves
             });
             let replayed = replays.each_ref().map(|replay| replay.as_ref().and_then(angle));
             let limit = limit.map(|limit| limit.limit);
-            all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder });
+            all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder: trial.largest_rudder() });
         }
     }
     all.sort_by(|a, b| a.rudder.total_cmp(&b.rudder));

@@ -1,6 +1,8 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
+use std::f64::consts::TAU;
+
 use campaign::curves::degrees;
 use document::names;
 use predict::imo::PredictedCriterion;
@@ -124,10 +126,26 @@ fn first_figures(prediction: &Prediction) -> String {
     }
 }
 
+/// Heading error of a replay; of more than one round also the error of the mean yaw rate, which adds up to it.
+pub fn heading_error(replayed: &RecordReplay) -> String {
+    let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
+    let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
+    let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
+    if measured.abs() < TAU {
+        return error;
+    }
+    let (rounds, off) = (fixed(measured.abs() / TAU, 1), 100.0 * (predicted / measured - 1.0));
+    let side = if off < 0.0 { "low" } else { "high" };
+    format!(
+        "{error}, which adds up over {rounds} rounds: the mean yaw rate is {} % too {side}",
+        significant(off.abs(), 2)
+    )
+}
+
 /// Finding: coverage of the band and heading error of a replayed record.
 fn inside(replayed: &RecordReplay) -> String {
-    let [share, rmse] = [fixed(100.0 * replayed.band_coverage_90, 0), significant(replayed.heading_rmse_deg, 2)];
-    format!("The 90 % band holds {share} % of the headings; heading error of the most probable ship {rmse}° (rms)")
+    let share = fixed(100.0 * replayed.band_coverage_90, 0);
+    format!("The 90 % band holds {share} % of the headings; most probable ship: {}", heading_error(replayed))
 }
 
 /// Tactical diameter of a recorded turn and of its prediction; without it, the heading error.
@@ -251,7 +269,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
-            let mut items = interval(&figure.interval, false);
+            let mut items = interval(&figure.interval, replayed.extrapolated);
             // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
             items.push(RowItem { place: RowPlace::Aside(0.34), ..item });

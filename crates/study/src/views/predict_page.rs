@@ -2,7 +2,7 @@
 
 use askama::Template;
 use document::names;
-use predict::document::OtherLoading;
+use predict::document::{OtherLoading, file_names};
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::markdown::text;
@@ -33,7 +33,8 @@ pub fn summary(document: &PredictDocument) -> String {
         summary += "predicted with the fitted hulls of three degrees of freedom, not with the yaw response\n";
     }
     document.earlier_trials.iter().for_each(|sentence| summary += &format!("{sentence}\n"));
-    if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
+    let is_extrapolated = |replayed: &RecordReplay| replayed.extrapolated;
+    if document.manoeuvres.iter().any(Prediction::is_extrapolated) || document.replays.iter().any(is_extrapolated) {
         summary += &format!(
             "extrapolated: beyond the rudder of {}° or the yaw rate of {}°/s in the records\n",
             fixed(to_deg(document.validity_range.rudder_rad), 1),
@@ -48,7 +49,7 @@ pub fn summary(document: &PredictDocument) -> String {
     if !document.ballast.is_empty() {
         summary += &format!(
             "records are replayed with {}, manoeuvres are those of the ship above\n",
-            document.ballast.join(", ")
+            file_names(&document.ballast)
         );
     }
     for prediction in document.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
@@ -94,9 +95,9 @@ fn caution(document: &PredictDocument) -> Option<String> {
 /// Agreement of a record with its replay: coverage of the 90 % band, heading error, current removed.
 fn coverage(replayed: &RecordReplay) -> String {
     let mut sentence = format!(
-        "{} % of the headings are inside the 90 % band; heading error {}° (rms)",
+        "{} % of the headings are inside the 90 % band; {}",
         fixed(100.0 * replayed.band_coverage_90, 0),
-        fixed(replayed.heading_rmse_deg, 2)
+        predict_figures::heading_error(replayed)
     );
     if let Some(current) = replayed.current {
         let doubt = current.north_sd_m_s.hypot(current.east_sd_m_s);
@@ -108,7 +109,7 @@ fn coverage(replayed: &RecordReplay) -> String {
 
 /// Sentence on the models of a correction.
 fn corrected_from(document: &PredictDocument) -> String {
-    format!("F from {}, B from {}", document.model_files(), document.ballast.join(", "))
+    format!("F from {}, B from {}", document.model_files(), file_names(&document.ballast))
 }
 
 /// Warnings on the corrected records, a line each.

@@ -22,10 +22,14 @@ fn cells(interval: &PredictionInterval) -> [String; 3] {
 /// Table of every characteristic of every manoeuvre and of every record.
 pub fn characteristics_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["manoeuvre", "figure", "unit"]).numbers(["median"]);
-    let mut table = Table::new(head.texts(["50 %", "90 %", "mostly from", "remark"]));
+    // Of a replayed record no source is drawn alone.
+    let has_sources = !document.manoeuvres.is_empty();
+    let head = head.texts(["50 %", "90 %"]).texts(has_sources.then_some("mostly from")).texts(["remark"]);
+    let mut table = Table::new(head);
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
         let ((name, unit), [median, half, most]) = (names::figure_of_merit(name), cells(interval));
-        table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
+        let cells = [manoeuvre.to_owned(), name, unit.to_owned(), median, half, most];
+        table.push(cells.into_iter().chain(has_sources.then_some(source)).chain([remark]));
     };
     for Prediction { kind, figures, .. } in &document.manoeuvres {
         for (name, figure) in figures {
@@ -43,8 +47,9 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
     for replayed in &document.replays {
         for (name, figure) in &replayed.figures {
             let place = if figure.inside90 { "inside" } else { "outside" };
-            let remark = format!("measured {}, {place}", fixed(figure.measured, figure.interval.decimals()));
-            push(&replayed.name, name, &figure.interval, String::new(), remark);
+            let beyond = if replayed.extrapolated { ", extrapolated" } else { "" };
+            let remark = format!("measured {}, {place}{beyond}", fixed(figure.measured, figure.interval.decimals()));
+            push(&names::record(&replayed.name), name, &figure.interval, MISSING.to_owned(), remark);
         }
     }
     table

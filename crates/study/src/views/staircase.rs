@@ -7,17 +7,17 @@ use report::figures::{AxisSpec, Layer, LayeredPanel, PanelRow, Panels, Pen, Stac
 use report::number::significant;
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
-use super::trace_tables::term;
+use super::trace_tables::{term, unnamed_remark};
 use crate::documents::curves::TraceCurves;
 
 /// Heading errors along the steps: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
-pub fn sentence(steps: &[StairEntry]) -> String {
+fn sentence(document: &TraceDocument) -> String {
     let size = |step: &StairEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
     let step_words = |step: &StairEntry| match &step.id {
         None => size(step),
-        Some(id) => format!("{} ({})", size(step), names::effect(id)),
+        Some(id) => format!("{} ({}{})", size(step), names::effect(id), unnamed_remark(document, id)),
     };
-    steps.iter().map(step_words).collect::<Vec<_>>().join(" → ")
+    document.staircase.iter().map(step_words).collect::<Vec<_>>().join(" → ")
 }
 
 /// Figure of the steps; `None` if the model adds no effect to the base.
@@ -55,5 +55,5 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         names::record(&document.records.first()?.name)
     );
     (!residuals.is_empty())
-        .then(|| PageFigure::new("staircase", format!("Heading error {}", sentence(steps)), caption, plot))
+        .then(|| PageFigure::new("staircase", format!("Heading error {}", sentence(document)), caption, plot))
 }

@@ -76,13 +76,21 @@ pub fn chosen_figures(
         figure.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
-                let trials = key_figure::trials(design).filter(|_| *place != FigurePlace::Traces);
-                plot = key_figure::highlighted_chart(plot, &output.highlight, trials);
+                plot = key_figure::highlighted_chart(plot, &output.highlight);
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
-            (FigurePlace::Key, PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot))
+            let mut key = PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot);
+            if !design.is_measured() {
+                let is_counted = matches!(place, FigurePlace::Chart | FigurePlace::AllTrials);
+                let remark = if is_counted { key_figure::trials(design) } else { key_figure::SIMULATED.to_owned() };
+                key_figure::remark_on_trials(&mut key, &remark);
+            }
+            (FigurePlace::Key, key)
         })
     });
+    for (_, figure) in figures.iter_mut().filter(|_| !design.is_measured()) {
+        key_figure::remark_on_trials(figure, key_figure::SIMULATED);
+    }
     let named = output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
     for name in named.into_iter().flatten().filter(|name| !stems.contains(name)) {
         warn("figures", name);

@@ -148,7 +148,7 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
     let (name, colour) = match outcome {
         Outcome::Added => ("named", HEADING),
         Outcome::Alias => ("indistinguishable from a named one", RUDDER),
-        Outcome::Rejected => ("rejected", RGBColor(0x8A, 0x8A, 0x8A)),
+        Outcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
     let hollow = outcome == Outcome::NotObservable;

@@ -3,7 +3,7 @@
 
 use campaign::curves::angle_curve_deg;
 use document::names;
-use document::trace::{BeforeAfter, TraceDocument};
+use document::trace::{BeforeAfter, RecordEntry, TraceDocument};
 use report::figures::{AxisSpec, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Stack, TickRule};
 use report::number::{counted, significant};
 use report::palette::SOLID;
@@ -86,12 +86,15 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
     Stack { is_half: true, x: vec![AxisSpec::time()], rows: rows.collect(), panels, ..Stack::default() }
 }
 
-/// Heading errors before and after of all held-out records, the worst first, headed by their root mean squares.
-fn all_held(held: &[BeforeAfter]) -> Stack {
-    let mut order: Vec<&BeforeAfter> = held.iter().collect();
-    order.sort_by(|a, b| b.before.heading_rmse_deg.total_cmp(&a.before.heading_rmse_deg));
+/// Heading errors before and after of all held-out records with their names, the worst first, headed by their root mean
+/// squares.
+fn all_held(document: &TraceDocument) -> Stack {
+    let held = &document.trace.error.validation;
+    let held_out = document.records.iter().filter(|record| record.held_out);
+    let mut order: Vec<(&RecordEntry, &BeforeAfter)> = held_out.zip(held).collect();
+    order.sort_by(|(_, a), (_, b)| b.before.heading_rmse_deg.total_cmp(&a.before.heading_rmse_deg));
     let layer = |origin: CurveOrigin, error: fn(&BeforeAfter) -> f64| {
-        let points = order.iter().zip(1..).map(|(errors, place)| (f64::from(place), error(errors), None));
+        let points = order.iter().zip(0..).map(|((_, errors), place)| (f64::from(place), error(errors), None));
         Layer::marks("", origin.look(), points.collect())
     };
     let layers = vec![
@@ -106,8 +109,8 @@ fn all_held(held: &[BeforeAfter]) -> Stack {
     );
     let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
     let panel = LayeredPanel { head: Some(head), layers, ..LayeredPanel::default() };
-    let x = vec![AxisSpec::decimal("held-out record, worst first")];
-    Stack { x, rows: vec![row], panels: vec![panel], ..Stack::default() }
+    let names = order.iter().map(|(record, _)| names::record(&record.name)).collect();
+    Stack { x: vec![AxisSpec::of_names(names)], rows: vec![row], panels: vec![panel], ..Stack::default() }
 }
 
 /// Key figure of a trace; `None` if no record was held out.
@@ -125,9 +128,10 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
         column(held, &error.validation[number], ['c', 'd'], &role),
     ];
-    stacks.extend((error.validation.len() > 1).then(|| all_held(&error.validation)));
+    stacks.extend((error.validation.len() > 1).then(|| all_held(document)));
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
-                   with the effects that were found and the 95 % band. (b), (d): the residuals of both. (e): the heading errors of both on every held-out record.";
+                   with the effects that were found and the 95 % band. (b), (d): the residuals of both. (e): the heading errors of both on \
+                   every held-out record, the worst first.";
     Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, ..Panels::default() }))
 }

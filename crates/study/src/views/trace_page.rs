@@ -18,7 +18,7 @@ use super::overshoots::ReplayedOvershoot;
 use super::record_figures::{stability, steady_turns};
 use super::trace_figures as figures;
 use super::trace_key_figure;
-use super::trace_tables as tables;
+use super::trace_tables::{self as tables, unnamed_remark};
 use super::{first_page, held_out, horizon, indices, overshoots, prior_odds, staircase};
 use crate::documents::curves::TraceCurves;
 use crate::documents::prior;
@@ -172,7 +172,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         particulars: first_page::particulars(named),
         physics: physics(document),
         glance: glance(document, &overshoots),
-        limits: limits(document),
+        limits: limits(document, curves),
         noise: noise(document),
         located: located(document, "`").collect(),
         errors: all_errors(document),
@@ -237,7 +237,8 @@ fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
 /// Physics of the effects of the staircase, a sentence each.
 fn physics(document: &TraceDocument) -> Vec<String> {
     let ids = document.staircase.iter().filter_map(|step| step.id.as_deref());
-    let sentence = |id| Some(format!("**{}**: {}.", names::effect(id), names::physics(id)?));
+    let sentence =
+        |id| Some(format!("**{}{}**: {}.", names::effect(id), unnamed_remark(document, id), names::physics(id)?));
     distinct(ids).into_iter().filter_map(sentence).collect()
 }
 
@@ -259,25 +260,15 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
 }
 
 /// Limits of validity of the model, a sentence each.
-fn limits(document: &TraceDocument) -> Vec<String> {
+fn limits(document: &TraceDocument, curves: &TraceCurves) -> Vec<String> {
     let rudder = fixed(to_deg(document.ship.validity_range.rudder_rad), 0);
-    let largest = document
-        .trace
-        .error
-        .validation
-        .iter()
-        .max_by(|a, b| a.after.heading_rmse_deg.total_cmp(&b.after.heading_rmse_deg));
-    let worst = largest.and_then(|errors| {
-        let name = document.records.iter().find(|record| record.file == errors.file).map(|record| &record.name)?;
-        let degrees = significant(errors.after.heading_rmse_deg, 2);
-        Some(format!(" Worst prediction: {}, {degrees}° of heading error (rms).", text(&names::record(name))))
-    });
+    let beyond = held_out::beyond_fitted_rudder(document, curves).unwrap_or_default();
     let speed = document.particulars().map_or_else(
         || String::from("Approach speeds other than that of the records."),
         |ship| format!("Approach speeds other than {} m/s.", significant(ship.speed, 3)),
     );
     vec![
-        format!("Rudder angles above {rudder}°, the largest in the fitted records.{}", worst.unwrap_or_default()),
+        format!("Rudder angles above {rudder}°, the largest in the fitted records.{beyond}"),
         speed,
         String::from("Weather unlike that of the records, and shallow water."),
     ]

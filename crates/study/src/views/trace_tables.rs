@@ -3,7 +3,7 @@
 use ::trace::replay_errors::HORIZONS_S;
 use document::identified_hull::IdentifiedCoefficient;
 use document::trace::{
-    ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
+    Document, ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
 };
 use document::{MomentKind, names};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
@@ -47,6 +47,14 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
 /// Several effects, joined by `between`.
 pub fn terms(all: &[TermEntry], between: &str) -> String {
     all.iter().map(|entry| term(&entry.id, &entry.form, entry.only.as_ref())).collect::<Vec<_>>().join(between)
+}
+
+/// Remark behind the name of an effect that the model has without naming it; empty for a named one.
+pub fn unnamed_remark(document: &TraceDocument, id: &str) -> String {
+    let Document { effects, candidates, .. } = &document.trace;
+    let is_named = effects.iter().any(|effect| effect.id == id || effect.aliases.iter().any(|alias| alias == id));
+    let candidate = candidates.iter().find(|candidate| candidate.id == id).filter(|_| !is_named);
+    candidate.map_or_else(String::new, |candidate| format!(", not named, p = {}", fixed(candidate.probability, 2)))
 }
 
 /// Table of named effects with their parameters.

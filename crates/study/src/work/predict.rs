@@ -85,10 +85,18 @@ impl StoredModel {
         // A trace has only one estimate.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
-        if asked.is_none() && ships.len() > 1 {
-            let text = format!("the answer of {method} is used; choose another with --method");
-            warnings.push(WarningCode::Answer, WarningSource::File(shown.to_owned()), text);
-        }
+        let used = match (asked, ships[&method].hulls.is_empty()) {
+            (None, true) if ships.len() > 1 => {
+                Some(format!("the answer of {method} is used; choose another with --method"))
+            }
+            (Some(_), false) => Some(format!(
+                "--method {method} changes little: the ship is steered with her fitted hulls, which are the same for \
+                 every method, and not with the K and T of {method}"
+            )),
+            _ => None,
+        };
+        warnings
+            .extend(used.map(|text| Warning::new(WarningCode::Answer, WarningSource::File(shown.to_owned()), text)));
         if let Some(because) = disbelief {
             let text = format!("no K and T can be taken from its records, so do not trust its predictions: {because}");
             warnings.push(WarningCode::NotIdentified, WarningSource::File(shown.to_owned()), text);

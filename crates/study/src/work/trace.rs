@@ -7,10 +7,13 @@ use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
 use campaign::identified_ship::{self, RecordFacts};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
-use document::{WarningCode, Warnings};
+use document::{WarningCode, Warnings, names};
 use identify::output_error;
 use identify::plausibility::unusual_ship;
 use indicatif::ProgressBar;
+use predict::prediction::TOLERANCE;
+use report::number::fixed;
+use ship::angle::to_deg;
 use trial::{Channel, Trial};
 
 use super::earlier_trials::{self, EarlierModel};
@@ -136,7 +139,7 @@ pub fn trace(
         amplitude: zigzags.mean_amplitude(),
         single_records: zigzags.single_records(&[&output_error]),
         scales,
-        next_trial: next_trial(&analysis, &trials),
+        next_trial: next_trial(&analysis, &trials, &held_out),
         trace: analysis.document,
         warnings: warnings.ranked(),
     };
@@ -191,11 +194,29 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
     Failure::in_file(file_and_hash(first).0, format!("{error}{why}"))
 }
 
+/// Sentence on a trial with more rudder, if the band of the model fails on a held-out record beyond the fitted rudder.
+fn larger_rudder(analysis: &Analysis, fitted: &[Trial], held_out: &[Trial]) -> Option<String> {
+    let seen = fitted.iter().map(Trial::largest_rudder).fold(0.0, f64::max);
+    let failed = held_out.iter().zip(&analysis.validation).filter_map(|(trial, comparison)| {
+        let coverage = comparison.after.coverage().filter(|coverage| !coverage.is_nominal())?;
+        (trial.largest_rudder() > TOLERANCE * seen).then_some((trial, coverage))
+    });
+    let (trial, coverage) = failed.max_by(|(a, _), (b, _)| a.largest_rudder().total_cmp(&b.largest_rudder()))?;
+    let [rudder, seen] = [trial.largest_rudder(), seen].map(|angle| fixed(to_deg(angle), 0));
+    Some(format!(
+        "First a trial with {rudder}° of rudder: beyond the fitted {seen}° the model fails, and its 95 % band holds {} % \
+         of the headings of {}. ",
+        fixed(100.0 * coverage.share(), 0),
+        names::record(trial.name())
+    ))
+}
+
 /// Sentence on the most informative next trial.
-fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
+fn next_trial(analysis: &Analysis, trials: &[Trial], held_out: &[Trial]) -> String {
+    let first = larger_rudder(analysis, trials, held_out).unwrap_or_default();
     let prospects = analysis.prospects(&planned::planned_trials(analysis, trials));
     let Some(best) = prospects.first() else {
-        return String::from("The fitted model cannot be steered through any standard manoeuvre.");
+        return first + "The fitted model cannot be steered through any standard manoeuvre.";
     };
     let pairs = |pairs: &[[String; 2]]| -> String {
         pairs.iter().map(|[a, b]| format!("{a} from {b}")).collect::<Vec<_>>().join(", ")
@@ -211,7 +232,7 @@ fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
         [] => String::new(),
         alike => format!("; it would not separate {}", pairs(alike)),
     };
-    format!("A {} {gains}{limits}.", best.name)
+    format!("{first}A {} {gains}{limits}.", best.name)
 }
 
 /// Settings of the analysis of a request.

@@ -116,12 +116,12 @@ fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
                    --length-m 160 --speed-m-s 7.7";
     let run = desk.run(&words(correct));
     let from = "Corrected to the loading of full.toml, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n\
-                F from f/fit.json at the loading of full.toml, B from f/fit.json";
+                F from fit.json at the loading of full.toml, B from fit.json";
     assert!(run.is_done().out.contains(from) && run.err.contains("x-g-m = 0 is taken"), "{}\n{}", run.out, run.err);
     let first = &desk.json("c/predict.json")["corrected"][0]["figures"]["first_overshoot_deg"];
     let truth = &truth["manoeuvres"][1]["figures"]["first_overshoot_deg"];
     assert!(holds90(first, truth) && number(&first["factor"]["ci90"][0]) > 1.2, "{truth} {first}");
-    assert!(desk.text("c/trial-form.md").contains("f/fit.json at the loading of full.toml"));
+    assert!(desk.text("c/trial-form.md").contains("predicted from fit.json at the loading of full.toml"));
     let report = desk.text("c/report.md");
     assert!(
         report.contains("## Corrected to the loading of full.toml") && !report.contains("the model at full load"),

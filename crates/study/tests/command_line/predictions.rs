@@ -263,7 +263,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     let port = told["median"].as_f64().expect("predicted");
     assert!((5.5..6.5).contains(&port), "{told}");
     let source = told["source"].as_str().unwrap_or_default();
-    assert!(source.starts_with("predicted from f/fit.json, 90 % [") && !source.contains("extrapolated"), "{source}");
+    assert!(source.starts_with("predicted from fit.json, 90 % [") && !source.contains("extrapolated"), "{source}");
     let twenty = json["form"].as_array().expect("a list").iter().find(|one| one["limit"] == 25.0).expect("20/20");
     assert_eq!(twenty["extrapolated"], true);
     // Ratios are of the scale of the sidecar.

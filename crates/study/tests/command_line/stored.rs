@@ -173,6 +173,7 @@ fn figures_are_chosen() {
     );
     let hero = desk.text("named/hero.svg");
     assert!(hero.contains("It does") && hero.contains("rms error of T"), "{hero}");
+    assert!(hero.contains("simulated trials each.") && desk.text("named/coverage.svg").contains("Simulated trials."));
     desk.run(&["report", "named", "--figures", "hero", "--out", "one", "--quiet"]).is_done();
     assert_eq!(figures("one"), ["hero.png"]);
     desk.run(&["report", "named", "--figures", "none", "--out", "bare", "--quiet"]).is_done();

@@ -179,6 +179,24 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     assert!(!desk.path("alone/hero.png").exists());
 }
 
+/// Where the model fails with more rudder than was fitted, its limits say so and the next trial is one there.
+#[test]
+fn a_failure_beyond_the_fitted_rudder_is_a_limit_and_the_next_trial() {
+    let desk = Desk::new();
+    let run = zig_zag_csv_of(&second_order());
+    desk.file("run.csv", &run);
+    desk.file("other.csv", &run);
+    desk.file("stalled.csv", with_column(&run, "rudder_deg", |_, delta| (2.0 * delta).to_string()));
+    desk.draw(&["trace", "run.csv", "--validate", "other.csv", "--validate", "stalled.csv", "--out", "t", "--quiet"])
+        .is_done();
+    let page = desk.text("t/report.md");
+    let limit = "largest in the fitted records. There the 95 % band holds ";
+    let next = "First a trial with 20° of rudder: beyond the fitted 10° the model fails, and its 95 % band holds ";
+    assert!(page.contains(limit) && page.contains(" % of the headings of stalled (") && page.contains(next), "{page}");
+    let figure = desk.text("t/hero.svg");
+    assert!(["stalled", "other"].iter().all(|name| figure.contains(&format!(">\n{name}\n"))), "{figure}");
+}
+
 /// Everything shown is made from `trace.json` and the tables beside it.
 #[test]
 fn a_trace_is_drawn_again_from_its_files() {

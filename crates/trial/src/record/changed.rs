@@ -44,7 +44,7 @@ impl Trial {
         channels: BTreeMap<Channel, Vec<f64>>,
     ) -> Result<Self, TrialError> {
         if let Some((&channel, values)) = channels.iter().find(|(_, values)| values.len() != self.len()) {
-            return Err(TrialError::Length { channel, found: values.len(), expected: self.len() });
+            return Err(TrialError::Length { channel, rows: values.len(), expected: self.len() });
         }
         Self::from_rudder(Arc::clone(&self.rudder), name, origin, channels, Vec::new())
     }
