@@ -9,10 +9,10 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 69_344,
-    tests: 31_446,
+    code: 69_682,
+    tests: 31_580,
     long_functions: 0,
-    shared_types: 7,
+    shared_types: 8,
     packages: 298,
     tuple_parameters: 0,
     text_lists: 0,

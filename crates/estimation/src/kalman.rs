@@ -13,9 +13,8 @@ pub mod whitener;
 
 use matrix::congruence_upper;
 pub use matrix::{congruence, identity, product, sum};
-pub use whitener::Whitener;
 
-/// Maximum number of states of a [`Whitener`].
+/// Maximum number of states of a [`Whitener`](whitener::Whitener).
 pub const MAX_STATES: usize = 5;
 
 /// Maximum period of a repeating sequence of readings: two sensors in turn.

@@ -9,8 +9,8 @@ use crate::lanes::{Kernel, run};
 /// Number of partial sums computed in parallel.
 const SUMS: usize = 4;
 
-/// Orthonormalises the first `L` of `C` columns and projects the last `M` columns off them; returns the last columns and
-/// the triangular factor: in row j the components of all columns along column j, on the diagonal its length before.
+/// Orthonormalises the first `L` of `C` columns and projects the last `M` columns off them; returns the last columns
+/// and the triangular factor: in row j the components of all columns along column j, on the diagonal its length before.
 ///
 /// L + M = C. The rows keep the orthonormal columns. A column of zeros stays.
 pub fn orthonormalise<const C: usize, const L: usize, const M: usize>(

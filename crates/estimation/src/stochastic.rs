@@ -4,7 +4,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::kalman::{Filter, MAX_STATES, Sensor, Step, System, Whitener};
+use crate::kalman::whitener::Whitener;
+use crate::kalman::{Filter, MAX_STATES, Sensor, Step, System};
 use crate::with_states;
 
 impl<const N: usize> Step<N> {

@@ -13,7 +13,8 @@
 use std::sync::OnceLock;
 
 use document::RandomMoment;
-use estimation::kalman::{MAX_STATES, Step, System, Whitener};
+use estimation::kalman::whitener::Whitener;
+use estimation::kalman::{MAX_STATES, Step, System};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 

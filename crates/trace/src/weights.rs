@@ -1,7 +1,7 @@
 //! Noise law of the records, and the whitening of columns under it.
 
 use estimation::column::dot;
-use estimation::kalman::Whitener;
+use estimation::kalman::whitener::Whitener;
 
 use crate::noise::{CorrelatedNoise, NoiseColour};
 

@@ -1,6 +1,7 @@
 //! Kalman filter of a noise law on a schedule.
 
-use estimation::kalman::{Filter, Sensor, System, Whitener};
+use estimation::kalman::whitener::Whitener;
+use estimation::kalman::{Filter, Sensor, System};
 use estimation::with_states;
 use trial::noise_model::MomentKind;
 

@@ -10,13 +10,14 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use estimation::column::{dot, gram};
-use estimation::kalman::whitener::Row;
-use estimation::kalman::{Reading, Whitener};
+use estimation::kalman::Reading;
+use estimation::kalman::whitener::{Row, Whitener};
 use estimation::rows;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use ship::first_order::State;
 
 use super::weight::{Weight, weigh};
+use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::likelihood::schedule::COMPASS_SENSOR;
 use crate::likelihood::tangents::fill_with_tangents;
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
@@ -157,8 +158,8 @@ impl Record {
         columns
     }
 
-    /// Columns of ships, whitened under noise whose filter may use another 1/T, for every pair of 1/T and noise. `None` if
-    /// a column is not finite. Two filters advance side by side.
+    /// Columns of ships, whitened under noise whose filter may use another 1/T, for every pair of 1/T and noise. `None`
+    /// if a column is not finite. Two filters advance side by side.
     fn whitened(&self, cases: &[(f64, NoiseParameters)]) -> Vec<Option<WhitenedColumns>> {
         let whitened_pair = |pair: &[(f64, NoiseParameters)]| {
             let case = |(inverse_time, noise): &(f64, NoiseParameters)| {
@@ -304,6 +305,19 @@ impl WhitenedColumns {
     }
 }
 
+/// Weight of a record; `all` is the number of readings of all records.
+fn weight(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Weight {
+    let readings = record.len() as f64;
+    let fitted = record.nuisance_count() as f64 + SHARED_PARAMETERS as f64 * readings / all as f64;
+    let [rudder, constant, measured] = &white.projected;
+    Weight {
+        products: gram([rudder, constant, measured]),
+        readings,
+        freedom: readings - fitted,
+        tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
+    }
+}
+
 impl RecordAtPoint {
     /// Contributions of a record at given steering, one for every noise vector, whose filter may use another 1/T than the
     /// ship. `None` if one is not finite.
@@ -318,7 +332,7 @@ impl RecordAtPoint {
         let whites = record.whitened(&cases.collect::<Vec<_>>());
         let part = |(white, (noise, _)): (Option<WhitenedColumns>, &(NoiseVector, f64))| {
             let white = white?;
-            let weight = Weight::new(record, noise, &white, readings);
+            let weight = weight(record, noise, &white, readings);
             let variance = weight.variance(steering[0], steering[1]);
             Self::from_columns(record, steering, white, &weight, variance)
         };
@@ -368,10 +382,8 @@ pub(super) fn evaluate(records: &[Record], starts: &[Start]) -> Vec<Option<Point
 /// Best fit from the whitened columns of every record.
 fn point(records: &[Record], (inverse_time, vectors): &Start, columns: Vec<WhitenedColumns>) -> Option<Point> {
     let all = reading_count(records);
-    let weight = |((record, vector), white): ((&Record, &NoiseVector), &WhitenedColumns)| {
-        Weight::new(record, vector, white, all)
-    };
-    let weights: Vec<Weight> = records.iter().zip(vectors).zip(&columns).map(weight).collect();
+    let weights = records.iter().zip(vectors).zip(&columns);
+    let weights: Vec<Weight> = weights.map(|((record, vector), white)| weight(record, vector, white, all)).collect();
     let (steering, variances) = weigh(&weights)?;
     let steering: [f64; 2] = steering.into();
     let parts = columns.into_iter().zip(weights.iter().zip(variances)).zip(records);

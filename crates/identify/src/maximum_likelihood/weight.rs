@@ -1,11 +1,7 @@
 //! Weights of the records of one ship, by the variance of the compass error of each.
 
-use estimation::column::gram;
 use nalgebra::{Matrix2, Vector2};
 
-use super::point::{Record, SHARED_PARAMETERS, WhitenedColumns};
-use crate::likelihood::NoiseVector;
-use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::profile::solve2;
 
 /// Maximum number of iterations of the weights of the records of one ship.
@@ -17,28 +13,16 @@ const WEIGHT_TOLERANCE: f64 = 1e-12;
 /// Quantities that determine the weight of a record.
 pub(super) struct Weight {
     /// Products of the responses to rudder and constant and the readings.
-    products: [[f64; 3]; 3],
+    pub products: [[f64; 3]; 3],
+    /// Number of readings.
     pub readings: f64,
     /// Number of readings minus number of fitted unknowns.
-    freedom: f64,
+    pub freedom: f64,
     /// Compass error of a ship with b = 1, rad, if the rudder error is declared.
-    tied: Option<f64>,
+    pub tied: Option<f64>,
 }
 
 impl Weight {
-    /// Weight of a record; `all` is the number of readings of all records.
-    pub fn new(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: usize) -> Self {
-        let readings = record.len() as f64;
-        let fitted = record.nuisance_count() as f64 + SHARED_PARAMETERS as f64 * readings / all as f64;
-        let [rudder, constant, measured] = &white.projected;
-        Self {
-            products: gram([rudder, constant, measured]),
-            readings,
-            freedom: readings - fitted,
-            tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
-        }
-    }
-
     /// Sum of squares of the whitened residual at b and b δ_r.
     pub fn square(&self, b: f64, q: f64) -> f64 {
         let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
