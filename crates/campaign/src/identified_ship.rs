@@ -127,7 +127,7 @@ impl<'a> RecordFacts<'a> {
             particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
             covariance: matrix_rows(&hull.covariance),
-            moment: RandomYawMoment {
+            model_error_moment: RandomYawMoment {
                 deviation_rudder_rad: hull.moment.deviation,
                 correlation_s: hull.moment.correlation_time,
             },

@@ -182,7 +182,7 @@ mod tests {
         for (small, other) in small.iter().zip([other[0] * time, other[1] * ratio, other[2], other[3]]) {
             assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
         }
-        assert_eq!(large.moment.correlation_s, stored.moment.correlation_s * time);
+        assert_eq!(large.model_error_moment.correlation_s, stored.model_error_moment.correlation_s * time);
         assert_eq!(large.beginning_yaw_rate_rad_s, stored.beginning_yaw_rate_rad_s / time);
         assert_eq!(large.particulars, stored.particulars);
     }

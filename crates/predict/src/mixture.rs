@@ -290,8 +290,8 @@ impl StructureSampler {
 
     /// Random yaw moment of the form of the hull, or of the structure.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
-        let Some(moment) = self.hull.as_ref().map(|hull| hull.stored.moment) else { return ship.noise.moment };
-        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = moment;
+        let Some(hull) = &self.hull else { return ship.noise.moment };
+        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = hull.stored.model_error_moment;
         match sd_rudder_rad > 0.0 {
             true => RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s },
             false => RandomMoment::None,
