@@ -245,10 +245,10 @@ fn indices(row: &StudyRow) -> Option<CaseAnswer> {
     let [k, t, _] = row.errors();
     let errors = [k?, t?].map(|error| rounded(100.0 * error));
     let [true_k, true_t] = row.truth();
-    let holds = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
-    let holds = holds(row.k_ci95_per_s, true_k).zip(holds(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);
+    let contains = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
+    let contains_truth = contains(row.k_ci95_per_s, true_k).zip(contains(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);
     let score = Some(errors[0].abs().max(errors[1].abs()));
-    Some(CaseAnswer { score, errors_percent: Some(errors), holds, ..CaseAnswer::default() })
+    Some(CaseAnswer { score, errors_percent: Some(errors), contains_truth, ..CaseAnswer::default() })
 }
 
 #[cfg(test)]
