@@ -150,7 +150,7 @@ impl ResidualSampler {
     /// Sample of the residual M (w + J d), rad.
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
-        let coloured: Vec<f64> = self.system.sample(&mut normal).into_iter().map(|x| x * self.deviation).collect();
+        let coloured: Vec<f64> = self.system.sample_path(&mut normal).into_iter().map(|x| x * self.deviation).collect();
         let mut residual = coloured.clone();
         let change = match &self.errors {
             ParameterErrors::OfRecord(weights) => {
