@@ -29,7 +29,7 @@ use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayDepth;
 use crate::report;
-use crate::residual_analysis::{Innovations, ResidualAnalysis, innovations, sums_of_squares};
+use crate::residual_analysis::{Innovations, ResidualAnalysis, heading_error_squares, innovations};
 use crate::rudder::{self, RudderNoise};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -127,7 +127,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// #     order = if psi * order > 20.0 { -order } else { order };
 /// #     delta = next;
 /// # }
-/// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// # let read = trial::reader::read_from_reader("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
 /// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
 /// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");
@@ -287,7 +287,7 @@ fn compare_fitted(
 /// Replaces the replay of the average by the replay of the base if the average has the larger heading error, as under a
 /// random moment that no replay can reproduce. `true` if it was replaced.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
-    let [before, after] = sums_of_squares(all);
+    let [before, after] = heading_error_squares(all);
     let keeps_base = after > before;
     if keeps_base {
         for comparison in all {

@@ -100,8 +100,8 @@ impl From<&ReplayResult> for ErrorsEntry {
             horizon_rmse_deg: horizon.into(),
             band_coverage_95: on.coverage().map(|coverage| coverage.share()),
             band_width_95_deg: on.width().map(to_deg),
-            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
-            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
+            with_own_bias_deg: errors.fitted_moment_errors.map(|with| to_deg(with.bias)),
+            with_own_moment_deg: errors.fitted_moment_errors.map(|with| to_deg(with.slow)),
         }
     }
 }
@@ -171,8 +171,8 @@ impl AveragedModel<'_> {
         starts.push(before.replay.initial());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
-            before.errors.with_moment = Some(moment.base_errors(&before.replay));
-            after.errors.with_moment = Some(moment.average_errors(&self.average(), &after.replay));
+            before.errors.fitted_moment_errors = Some(moment.base_errors(&before.replay));
+            after.errors.fitted_moment_errors = Some(moment.average_errors(&self.average(), &after.replay));
         }
         Ok(RecordComparison { before, after })
     }
@@ -224,7 +224,7 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
         yaw_rate,
         overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
         windows,
-        with_moment: None,
+        fitted_moment_errors: None,
     };
     ReplayResult { replay, errors, band: None }
 }

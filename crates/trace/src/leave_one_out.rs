@@ -84,12 +84,12 @@ fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
     }
     let mut terms = Vec::new();
     for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
-        if term.record == Some(omitted) {
+        if term.record_index == Some(omitted) {
             continue;
         }
         theta.extend_from_slice(&fit.theta[range]);
         let mut kept = term.as_ref().clone();
-        kept.record = kept.record.map(|record| if record > omitted { record - 1 } else { record });
+        kept.record_index = kept.record_index.map(|index| if index > omitted { index - 1 } else { index });
         terms.push(kept.into());
     }
     (Structure { records: structure.records - 1, terms, ..*structure }, theta)

@@ -32,7 +32,7 @@ pub struct Location {
 
 impl Location {
     /// Random moment in addition to named effects and shapes; `None` if the rudder noise explains it.
-    pub fn moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
+    pub fn unexplained_random_moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
         let is_of_rudder = moment.white.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);

@@ -208,14 +208,14 @@ mod tests {
             [&analysis.validation[0].before, &analysis.validation[0].after].map(|on| on.errors.clone())
         };
         let [base, average] = errors(|_| 0.01, true);
-        let [bias, slow] = deg(average.with_moment.expect("a thorough analysis"));
+        let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
         assert!(average.heading.to_degrees() > 2.0 && bias < 0.12 && slow < 0.06, "{average:?}");
-        assert!(base.with_moment.is_some_and(|with| with.bias < 0.5 * base.heading), "{base:?}");
+        assert!(base.fitted_moment_errors.is_some_and(|with| with.bias < 0.5 * base.heading), "{base:?}");
         let hurried = errors(|_| 0.01, false);
-        assert!(hurried.iter().all(|on| on.with_moment.is_none()));
+        assert!(hurried.iter().all(|on| on.fitted_moment_errors.is_none()));
         assert_eq!(hurried.map(|on| on.heading), [base.heading, average.heading], "the plain errors stay");
         let [_, average] = errors(|t| 0.01 * (t / 80.0).sin(), true);
-        let [bias, slow] = deg(average.with_moment.expect("a thorough analysis"));
+        let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
         assert!(bias > 0.4 && slow < 0.07, "{bias} and {slow} deg");
     }
 }

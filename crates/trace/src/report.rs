@@ -203,7 +203,7 @@ impl TraceParts<'_> {
             true => quantity(NormalMixture { components: parts }.summary()),
             false => Quantity::without_uncertainty(parts[0].1),
         };
-        self.number(entry.parameter, quantity, entry.record, entry.is_at_bound(fitted))
+        self.number(entry.parameter, quantity, entry.record_index, entry.is_at_bound(fitted))
     }
 
     fn number(&self, parameter: &Parameter, value: Quantity, record: Option<usize>, at_bound: bool) -> ParameterEntry {

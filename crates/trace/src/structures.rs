@@ -320,7 +320,7 @@ impl StructureSearch<'_> {
     /// Structures with their weights, the probabilities of the terms and their support.
     fn result(self) -> Structures {
         let terms = &self.full.fit.structure.terms;
-        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record)).collect();
+        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record_index)).collect();
         let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
         let support = terms.iter().map(|term| term.name()).zip(support).collect();
         let visibility = self.visibility;

@@ -12,7 +12,7 @@ use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::physics::MissingPhysics;
 use crate::scenario::problem::{KeyFault, KeyPath};
-use crate::scenario::records::{RecordSet, RecordStudyWire};
+use crate::scenario::records::{RecordScenarioWire, RecordSet};
 use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
@@ -309,7 +309,7 @@ pub(crate) fn measured_cell(
         None => fault,
     };
     let changed = changed(document, points).map_err(attribute)?;
-    let wire: RecordStudyWire = reader::read_document(&changed).map_err(attribute)?;
+    let wire: RecordScenarioWire = reader::read_document(&changed).map_err(attribute)?;
     let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     Ok(DesignCell::new(points, methods, TrialSource::Measured(set)))

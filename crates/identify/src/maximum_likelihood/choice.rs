@@ -71,7 +71,7 @@ impl PreparedRecords {
         let method = output_error::Settings::default().build().expect("default settings are valid");
         // Readings far from any possible course would spoil the first fit: a very quick ship could follow a sentinel in
         // the first row by its initial yaw rate.
-        let gross = |track: &Track| match settings.outliers {
+        let gross = |track: &Track| match settings.removes_outliers {
             true => Suspects { jumps: Vec::new(), ..outliers::find_suspects(track, &track.heading, &[]) },
             false => Suspects::default(),
         };
@@ -81,7 +81,7 @@ impl PreparedRecords {
             whole.iter().zip(&suspects).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
         let mut first = method.fit(tracks.clone(), finest);
         let mut evaluations = 0;
-        for _ in 0..if settings.outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
+        for _ in 0..if settings.removes_outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
             let fitted = first.as_ref().ok();
             let again = |(track, excluded): (&Track, &Suspects)| {
@@ -104,7 +104,7 @@ impl PreparedRecords {
             first = method.fit(tracks.clone(), finest);
         }
         let first = first?;
-        let gyro = settings.yaw_rate
+        let gyro = settings.uses_yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
         let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
         let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());

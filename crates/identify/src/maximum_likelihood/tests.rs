@@ -200,7 +200,7 @@ fn outliers_are_left_out_and_listed() {
             assert!((spoilt.value - clean.value).abs() < sd, "{} against {} ± {sd}", spoilt.value, clean.value);
         }
     }
-    let raw = Settings { outliers: false, ..Settings::default() }.build().expect("valid");
+    let raw = Settings { removes_outliers: false, ..Settings::default() }.build().expect("valid");
     let trial = spoilt(&|row, psi| if row == 77 { psi + from_deg(1.5) } else { psi });
     assert_eq!(raw.identify(&[trial]).expect("an answer").diagnostic("left_out"), Some(0.0));
 }

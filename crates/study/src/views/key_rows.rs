@@ -42,7 +42,7 @@ pub fn tint(colour: RGBColor) -> RGBColor {
 
 /// Highlights rows; returns a remark on their colours.
 pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
-    let about = &highlight.methods();
+    let about = &highlight.method_labels();
     let Highlight { rows, over_bound, .. } = highlight;
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {

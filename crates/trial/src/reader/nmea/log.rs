@@ -57,20 +57,22 @@ const MAX_DISORDER_S: f64 = 1.0;
 /// Counts of lines.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counts {
-    pub blank: usize,
+    pub blank_lines: usize,
     /// Lines of text without a sentence.
-    pub text: usize,
+    pub text_lines: usize,
     /// Sentences, read or not.
     pub sentences: usize,
-    pub foreign: usize,
-    pub wrong: usize,
-    pub broken: usize,
+    /// Sentences that are not read.
+    pub foreign_sentences: usize,
+    pub wrong_checksums: usize,
+    /// Sentences cut short, and lines that are not text.
+    pub broken_sentences: usize,
     /// Sentences accepted without a checksum.
-    pub unsummed: usize,
+    pub without_checksum: usize,
     /// Sentences without a stamp in a log with stamps.
-    pub unstamped: usize,
+    pub without_stamp: usize,
     /// Stamps far from their neighbours.
-    pub strayed: usize,
+    pub stray_stamps: usize,
 }
 
 /// Content of a log so far.
@@ -102,11 +104,11 @@ impl NmeaLog {
     pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), Problem> {
         match frame(line) {
             Line::Sentence(frame) => return self.sentence(&frame, number),
-            Line::Foreign => self.counts.foreign += 1,
-            Line::Blank => self.counts.blank += 1,
-            Line::Text => self.counts.text += 1,
-            Line::WrongSum => self.counts.wrong += 1,
-            Line::Damaged => self.counts.broken += 1,
+            Line::Foreign => self.counts.foreign_sentences += 1,
+            Line::Blank => self.counts.blank_lines += 1,
+            Line::Text => self.counts.text_lines += 1,
+            Line::WrongSum => self.counts.wrong_checksums += 1,
+            Line::Damaged => self.counts.broken_sentences += 1,
         }
         Ok(())
     }
@@ -121,7 +123,7 @@ impl NmeaLog {
         if self.stamped {
             let Some(stamp) = stamp else {
                 self.counts.sentences += 1;
-                self.counts.unstamped += 1;
+                self.counts.without_stamp += 1;
                 return Ok(());
             };
             let fault = |_| Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) };
@@ -142,7 +144,7 @@ impl NmeaLog {
             if self.add(slots, frame, source, at, &row) {
                 self.count(frame);
             } else {
-                self.counts.broken += 1;
+                self.counts.broken_sentences += 1;
             }
         }
         if self.numbers > MAX_CELLS {
@@ -154,7 +156,7 @@ impl NmeaLog {
     /// Counts an accepted sentence.
     fn count(&mut self, frame: &Frame) {
         self.counts.sentences += 1;
-        self.counts.unsummed += usize::from(!frame.summed);
+        self.counts.without_checksum += usize::from(!frame.summed);
     }
 
     /// Adds the readings of a sentence to the table of its instrument.
@@ -215,7 +217,7 @@ impl NmeaLog {
                     *last = f64::NAN;
                 }
             }
-            self.counts.strayed += 1;
+            self.counts.stray_stamps += 1;
             self.latest = (at.max(before), before, 2);
             return Ok(true);
         }
@@ -224,7 +226,7 @@ impl NmeaLog {
             let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.time_of_day_at(at));
             return Err(Problem::ClockBack { line, before: shown(latest), after: shown(after) });
         }
-        self.counts.strayed += 1;
+        self.counts.stray_stamps += 1;
         self.late = Some((number, at));
         Ok(false)
     }
