@@ -173,8 +173,8 @@ impl RecordTerms {
     }
 }
 
-/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` at the start. For a < 0 it starts at the end
-/// and runs backwards, so that it does not grow; the two differ by the motion of an initial yaw rate.
+/// Heading ψ, rad, of ψ'' = −a ψ' + f from ψ = 0 and ψ' = `rate`, f in rad/s² and linear between rows. For a < 0 it is
+/// computed backwards from the last row, where these conditions then apply, so that it does not grow.
 fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Vec<f64> {
     let rows = time.len();
     let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };

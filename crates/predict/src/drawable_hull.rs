@@ -1,4 +1,4 @@
-//! Ships sampled from the normal law of the coefficients of a hull of three degrees of freedom.
+//! Ships drawn from the normal law of the coefficients of a hull of three degrees of freedom.
 
 use document::{IdentifiedHull, IdentifiedShipError};
 use nalgebra::{DMatrix, DVector};
@@ -15,7 +15,7 @@ use crate::root::covariance_root;
 /// used.
 const MAX_TRIES: usize = 100;
 
-/// Hull from which ships are sampled.
+/// Hull from which ships are drawn.
 #[derive(Debug, Clone)]
 pub(crate) struct HullSampler {
     pub stored: IdentifiedHull,
@@ -126,7 +126,7 @@ mod tests {
         mixture.predict(&kind, draws, true).expect("a turn")
     }
 
-    /// A ship with hulls is sampled from them by their weights and has a track.
+    /// A ship with hulls is drawn from them by their weights and has a track.
     #[test]
     fn hulls_take_the_place_of_the_structures() {
         let mut stored = ship();

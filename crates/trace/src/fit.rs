@@ -20,7 +20,7 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 /// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingRule {
-    /// Maximum number of steps.
+    /// Maximum number of accepted Levenberg–Marquardt steps; the fit then ends without convergence, at the best point.
     pub max_steps: usize,
     /// Predicted decrease of J below which the fit ends.
     pub min_decrease: f64,

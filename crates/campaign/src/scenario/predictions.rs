@@ -12,7 +12,7 @@ use crate::scenario::problem::{KeyFault, KeyPath};
 pub(crate) struct PredictWire {
     /// Manoeuvres, as in `study predict --manoeuvre`.
     pub manoeuvres: Vec<String>,
-    /// Number of ships sampled for every prediction.
+    /// Number of ships drawn for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }
@@ -37,7 +37,7 @@ pub struct Predictions {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RecordPredictWire {
-    /// Number of ships sampled for every prediction.
+    /// Number of ships drawn for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }

@@ -154,7 +154,10 @@ impl Search<'_> {
         LEVELS.map(level).into()
     }
 
-    /// Starts for gusts: short gusts, which act like a white moment, and long gusts, which act like a walk.
+    /// Starts for gusts d' = −d/τ + w of standard deviation σ, with τ in shares of the record.
+    ///
+    /// Short gusts, τ = 0.01 and 0.05, act like a white moment of density q: σ² = q/(2τ). Long gusts, τ = 0.1 and 0.5,
+    /// act like a walk whose increments have density q: σ² = q τ/2.
     pub fn gust_starts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<Start> {
         let mut starts = Vec::new();
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {

@@ -70,7 +70,7 @@ impl AxisSpec {
         Self { reach: Some(AxisReach { times, centre, symmetric: false }), ..self }
     }
 
-    /// The axis limited symmetrically about zero.
+    /// The axis limited to ±`times` the median extent of the data, centred on zero.
     pub fn about_zero(self, times: f64) -> Self {
         Self { reach: Some(AxisReach { times, centre: Some(0.0), symmetric: true }), ..self }
     }

@@ -77,7 +77,7 @@ impl ErrorMeasure {
         matches!(self, Self::Rms | Self::OverBound)
     }
 
-    /// Reference value of a panel.
+    /// Nominal coverage, 95 %, for the two panels of coverage; `None` for every other panel.
     fn reference(self, panel: usize) -> Option<Reference95> {
         (self == Self::Coverage && panel < 2).then(|| Reference95::line(95.0))
     }
