@@ -95,8 +95,7 @@ impl RudderHolds {
         // as large.
         let noise_sd =
             1.4826 / 6.0_f64.sqrt() * finite_median(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
-        let quantum = smallest_step(rudder);
-        let floor = (3.0 * noise_sd).max(1.1 * quantum).clamp(MIN_BAND, MAX_BAND);
+        let floor = (3.0 * noise_sd).max(1.1 * smallest_step(rudder)).clamp(MIN_BAND, MAX_BAND);
         let median = finite_median(angle.iter().copied());
         let neutral = if median.abs() <= MAX_NEUTRAL { median } else { 0.0 };
         let mut rudder = Self { angle, noise_sd, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };

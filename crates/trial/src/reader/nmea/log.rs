@@ -29,7 +29,7 @@ pub(super) struct NmeaInstrument {
     /// Number of invalid entries of each quantity.
     pub invalid: [usize; MAX_SLOTS],
     /// `true` once a sentence had a checksum.
-    summed: bool,
+    writes_checksums: bool,
 }
 
 impl NmeaInstrument {
@@ -86,7 +86,7 @@ pub(super) struct NmeaLog {
     pub leading: PrefixReader,
     pub stamps: StampConverter,
     /// `true` for a log with stamps before its sentences.
-    pub stamped: bool,
+    pub has_stamps: bool,
     /// Latest stamp and the stamp before it, s, and the number of lines with the latest stamp.
     latest: (f64, f64, usize),
     /// Line and time of the last stamp, if it is before the latest stamp.
@@ -95,9 +95,9 @@ pub(super) struct NmeaLog {
 }
 
 impl NmeaLog {
-    /// Empty log; `stamped` for stamps before the sentences.
-    pub fn new(stamped: bool) -> Self {
-        Self { stamped, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
+    /// Empty log; `has_stamps` for stamps before the sentences.
+    pub fn new(has_stamps: bool) -> Self {
+        Self { has_stamps, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
     }
 
     /// Adds a line.
@@ -120,7 +120,7 @@ impl NmeaLog {
         };
         let (stamp, source) = if frame.before.is_empty() { (None, 0) } else { self.leading.read(frame.before) };
         let mut at = number as f64;
-        if self.stamped {
+        if self.has_stamps {
             let Some(stamp) = stamp else {
                 self.counts.sentences += 1;
                 self.counts.without_stamp += 1;
@@ -156,7 +156,7 @@ impl NmeaLog {
     /// Counts an accepted sentence.
     fn count(&mut self, frame: &Frame) {
         self.counts.sentences += 1;
-        self.counts.without_checksum += usize::from(!frame.summed);
+        self.counts.without_checksum += usize::from(!frame.has_checksum);
     }
 
     /// Adds the readings of a sentence to the table of its instrument.
@@ -179,17 +179,17 @@ impl NmeaLog {
                     at: Vec::new(),
                     columns: vec![Vec::new(); slots.len()],
                     invalid: [0; MAX_SLOTS],
-                    summed: false,
+                    writes_checksums: false,
                 });
                 self.instruments.len() - 1
             }
             None => return true,
         };
         let instrument = &mut self.instruments[number];
-        if instrument.summed && !frame.summed {
+        if instrument.writes_checksums && !frame.has_checksum {
             return false;
         }
-        instrument.summed = frame.summed;
+        instrument.writes_checksums = frame.has_checksum;
         instrument.at.push(at);
         for (column, value) in instrument.columns.iter_mut().zip(row.values) {
             column.push(value);

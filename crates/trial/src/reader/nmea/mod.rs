@@ -106,7 +106,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
             Problem::NoReadings { sentences: counts.sentences }
         });
     }
-    let (clock, timing) = if log.stamped { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
+    let (clock, timing) = if log.has_stamps { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
     let mut warnings = count_warnings(&counts, lines);
     warnings.extend(timing);
     let ChosenInstruments { mut series, warnings: choices, .. } = ChosenInstruments::from_instruments(&log.instruments);
