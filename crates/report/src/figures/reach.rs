@@ -12,7 +12,7 @@ pub struct AxisReach {
     /// Centre of the axis; `None`: the median of the data.
     pub centre: Option<f64>,
     /// `true` if the axis is symmetric about the centre.
-    pub symmetric: bool,
+    pub is_symmetric: bool,
 }
 
 /// Data along an axis.
@@ -67,7 +67,7 @@ impl Extents {
             is_cut |= *value < lo - room || *value > hi + room;
         }
         match reach {
-            Some(AxisReach { symmetric: true, centre, .. }) => {
+            Some(AxisReach { is_symmetric: true, centre, .. }) => {
                 let centre = centre.unwrap_or(0.0);
                 let half = (ends.0 - centre).abs().max((ends.1 - centre).abs());
                 (Some((centre - half, centre + half)), is_cut)
@@ -130,11 +130,11 @@ mod tests {
         [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
         let ends = |data: &Extents, reach| data.ends(reach).0.expect("there are data");
         assert_eq!(ends(&data, None), (0.099, 9.9));
-        let reach = AxisReach { times: 4.0, centre: None, symmetric: false };
+        let reach = AxisReach { times: 4.0, centre: None, is_symmetric: false };
         assert!(ends(&data, Some(reach)).1 < 0.2, "{:?}", ends(&data, Some(reach)));
         data.fixed.push(1.0);
         assert_eq!(ends(&data, Some(reach)).1, 1.0);
-        let about = AxisReach { centre: Some(0.0), symmetric: true, ..reach };
+        let about = AxisReach { centre: Some(0.0), is_symmetric: true, ..reach };
         let (lo, hi) = ends(&data, Some(about));
         assert_eq!(lo, -hi);
     }

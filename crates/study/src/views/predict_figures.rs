@@ -229,7 +229,7 @@ fn track(prediction: &Prediction) -> Panels {
     let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
     let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::new(Stack { equal: true, ..stack }) }
+    Panels { cut, ..Panels::new(Stack { has_equal_scales: true, ..stack }) }
 }
 
 /// Prediction intervals of characteristics, with measured values and limits.

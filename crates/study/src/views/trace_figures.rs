@@ -151,8 +151,7 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
         Outcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
-    let hollow = outcome == Outcome::NotObservable;
-    (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow })
+    (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow: outcome == Outcome::NotObservable })
 }
 
 /// Names of the effects with their probabilities.
