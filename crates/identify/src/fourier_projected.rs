@@ -195,8 +195,7 @@ impl FourierProjected {
             Order::Fixed(harmonics) => return accept(fourier::fit(time, heading, harmonics, fundamental)?),
             Order::Gcv { reach } => reach,
         };
-        let searched = SEARCH_HARMONICS.min((time.len() - 2) / 2);
-        let choice = fundamental.choose(time, heading, searched)?;
+        let choice = fundamental.choose(time, heading, SEARCH_HARMONICS.min((time.len() - 2) / 2))?;
         let zigzag = TAU / zero_crossing_period(time, heading)?;
         let needed = (reach.min(MIN_REACH) * zigzag / choice.fundamental).ceil() as usize;
         if needed > MAX_HARMONICS {

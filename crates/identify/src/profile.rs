@@ -121,8 +121,7 @@ impl Profile {
         let [b, q] = self.steering.into();
         let mut information = Matrix3::zeros();
         for part in &mut self.parts {
-            let coefficients = part.coefficients(b, q);
-            information += part.information(inverse_time, &coefficients);
+            information += part.information(inverse_time, &part.coefficients(b, q));
         }
         information
     }

@@ -139,12 +139,12 @@ impl Profile {
 
     /// RSS from an orthogonal decomposition, for columns that are nearly dependent on the given rows.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
-        let FoldedRows { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
+        let FoldedRows { time, even, odd, weight, skew, is_symmetric, used_rows } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.duration));
-        let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
+        let (mut cosines, mut sines) = (DMatrix::zeros(*used_rows, n + 1), DMatrix::zeros(*used_rows, n));
         // A pair of instants has the weight √2; a single instant has the sign of its side in `skew`.
-        let root: Vec<f64> = weight[..*used].iter().map(|weight| weight.sqrt()).collect();
-        for row in 0..*used {
+        let root: Vec<f64> = weight[..*used_rows].iter().map(|weight| weight.sqrt()).collect();
+        for row in 0..*used_rows {
             let [xi, sine] = arguments(phasor(0.5 * fundamental * time[row]), share);
             let (mut before, mut here) = (xi, 1.0);
             for k in 0..=n {
@@ -155,7 +155,7 @@ impl Profile {
                 (before, here) = (here, 2.0 * xi * here - before);
             }
         }
-        let part = |signal: &[f64]| DVector::from_fn(*used, |row, _| signal[row] / root[row]);
+        let part = |signal: &[f64]| DVector::from_fn(*used_rows, |row, _| signal[row] / root[row]);
         if *is_symmetric {
             // The cosines act only on the even part of the record, the sines only on the odd part.
             return residual_sum_of_squares(cosines, part(even)) + residual_sum_of_squares(sines, part(odd));

@@ -132,7 +132,7 @@ impl Record {
 
     /// Declared rudder error of a noise vector, rad.
     pub fn declared_rudder_error(&self, vector: &NoiseVector) -> Option<f64> {
-        self.declared.filter(|_| vector.rudder)
+        self.declared.filter(|_| vector.has_rudder_error)
     }
 
     /// Number of unknowns of the record alone: initial state and jumps.

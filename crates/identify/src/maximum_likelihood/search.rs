@@ -85,7 +85,7 @@ pub(super) struct Search<'a> {
 pub(super) struct Maximum {
     pub point: Point,
     pub derivatives: ScoreAndInformation,
-    pub converged: bool,
+    pub has_converged: bool,
 }
 
 impl Search<'_> {
@@ -198,12 +198,12 @@ impl Search<'_> {
         for _ in 0..self.iterations {
             let score = picked(&derivatives.score, &free);
             let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
-                return Some(Maximum { point, derivatives, converged: false });
+                return Some(Maximum { point, derivatives, has_converged: false });
             };
             let promise = -step.dot(&score);
             let settled = if free.len() > 1 { MIN_DECREASE } else { MIN_DECREASE_ALONE };
             if promise <= settled {
-                return Some(Maximum { point, derivatives, converged: true });
+                return Some(Maximum { point, derivatives, has_converged: true });
             }
             let largest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
@@ -217,7 +217,7 @@ impl Search<'_> {
             });
             let Some(lower) = lower else {
                 // No step decreases it any further: a minimum to rounding.
-                return Some(Maximum { point, derivatives, converged: promise < SLACK });
+                return Some(Maximum { point, derivatives, has_converged: promise < SLACK });
             };
             point = lower;
             derivatives = self.score_and_information(&point)?;
@@ -229,7 +229,7 @@ impl Search<'_> {
                 free = now;
             }
         }
-        Some(Maximum { point, derivatives, converged: false })
+        Some(Maximum { point, derivatives, has_converged: false })
     }
 
     /// Indices of the free unknowns in the score: an entry at the edge of its range is free only if the score points

@@ -111,8 +111,13 @@ fn the_score_is_the_derivative() {
         .collect();
     for moment in MomentKind::ALL {
         let vectors = [
-            NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
-            NoiseVector { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
+            NoiseVector { moment, log: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() },
+            NoiseVector {
+                moment,
+                has_rudder_error: true,
+                has_coloured_compass: true,
+                log: [-6.5, 3.0, -6.0, 1.0, -1.0],
+            },
         ];
         let a = 0.063;
         let point = evaluate(&records, a, &vectors).expect("a fit");

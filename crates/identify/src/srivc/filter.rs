@@ -79,7 +79,7 @@ impl Filters {
             if let Some(before) = before {
                 filters.advance(before, row);
             }
-            if row.observed {
+            if row.is_observed {
                 visit(row, &filters);
             }
             before = Some(row);
