@@ -110,7 +110,7 @@ impl SharedTrials<'_> {
             Procedure::Trace(settings) => {
                 let judge = |trial| self.replayed(trial).map(|[judge, _]| judge.clone());
                 let held_out: Vec<Trial> = (0..self.judges.len()).filter_map(judge).collect();
-                let settings = ::trace::Settings { hulls: true, ..settings.clone() };
+                let settings = ::trace::Settings { fits_hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
                 Some(analysis.map(fit).map_err(|error| engine::trace_failure_kind(&error).into()))

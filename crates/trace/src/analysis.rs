@@ -64,7 +64,7 @@ pub struct Analysis {
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
-/// Channels kept by `Settings::heading_alone`.
+/// Channels kept by `Settings::uses_heading_alone`.
 const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
 
 /// Records reduced to the channels [`COMMON`].
@@ -147,7 +147,7 @@ pub fn trace_with_watcher(
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
-    if settings.heading_alone {
+    if settings.uses_heading_alone {
         return analyse(&of_heading(trials), &of_heading(validation), settings, watcher);
     }
     analyse(trials, validation, settings, watcher)
@@ -177,8 +177,8 @@ fn analyse(
     let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
-    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.thorough)?;
-    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
+    let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let leave_one_out = if is_folded { folds() } else { Vec::new() };
     let parts = report::TraceParts {
@@ -260,11 +260,11 @@ fn compare_fitted(
     law: &NoiseLaw,
     members: &[(f64, &StructureFit)],
     hulls: &[HullEstimate],
-    &Settings { thorough, .. }: &Settings,
+    &Settings { is_thorough, .. }: &Settings,
     time: f64,
 ) -> Result<(Vec<RecordComparison>, bool), TraceError> {
     let response = &base.estimate.response;
-    let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
+    let depth = if is_thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;

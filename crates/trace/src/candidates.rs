@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn a_trace_says_that_a_calm_is_declared() {
         let [calm, _] = trials();
-        let settings = Settings { thorough: false, ..Settings::default() };
+        let settings = Settings { is_thorough: false, ..Settings::default() };
         let analysis = trace(&[calm], &[], &settings).expect("a base");
         for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveHeading.id()] {
             let entry = analysis.document.candidates.iter().find(|entry| entry.id == id).expect("on the list");

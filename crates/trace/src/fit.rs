@@ -302,8 +302,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f
             false => law.cdf(room).ln() + 0.5 * push * push,
         }
     };
-    let ends: f64 = priors.iter().enumerate().map(inside).sum();
-    -0.5 * at.value + constants + volume + ends
+    -0.5 * at.value + constants + volume + priors.iter().enumerate().map(inside).sum::<f64>()
 }
 
 /// Maximum a posteriori estimate of a structure.

@@ -16,7 +16,7 @@ pub fn fit(
     comparisons: &[RecordComparison],
     residual_analysis: &ResidualAnalysis,
 ) -> Vec<HullEstimate> {
-    if !settings.hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
+    if !settings.fits_hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();

@@ -201,7 +201,7 @@ mod tests {
     fn a_moment_of_the_record_is_no_error_of_the_ship() {
         let drifting = [moved(&plain(1, 10.0), |t| 1e-4 * t)];
         let errors = |moment: fn(f64) -> f64, thorough: bool| {
-            let settings = Settings { thorough, ..Settings::default() };
+            let settings = Settings { is_thorough: thorough, ..Settings::default() };
             let analysis = trace(&drifting, &[moved(&plain(2, 15.0), moment)], &settings).expect("a base");
             let effects = &analysis.document.effects;
             assert!(effects.iter().any(|effect| effect.id == "moment_drift"), "{effects:?}");

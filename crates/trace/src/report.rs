@@ -111,8 +111,9 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: self.residual_analysis.is_unexplained,
-                signature: residual_peak
-                    .map(|s| sentences::residual_peak_sentence(s, &self.trials[s.record].title()) + &self.bands()),
+                signature: residual_peak.map(|s| {
+                    sentences::residual_peak_sentence(s, &self.trials[s.record_index].title()) + &self.bands()
+                }),
             },
             disturbance,
             located,

@@ -237,7 +237,7 @@ pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
 /// Clause on a band with less than its nominal coverage.
 pub fn band_sentence(name: &str, coverage: &BandCoverage) -> String {
     let [low, high] = coverage.interval.map(|end| 100.0 * end);
-    let (inside, total, share) = (coverage.inside, coverage.total, 100.0 * coverage.share());
+    let (inside, total, share) = (coverage.headings_inside, coverage.headings, 100.0 * coverage.share());
     format!("; the 95 % band holds {inside} of {total} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }
 

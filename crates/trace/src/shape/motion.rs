@@ -25,7 +25,7 @@ pub struct PredictedMotion<'a> {
     /// Record.
     pub record: &'a PreparedRecord,
     /// Index of the record.
-    pub number: usize,
+    pub record_index: usize,
     /// First-order base: 1/T, 1/s, and K/T, 1/s².
     pub base: [f64; 2],
     /// Predicted heading minus the first heading at every row, rad.
@@ -46,13 +46,13 @@ impl<'a> PredictedMotion<'a> {
     /// at the observed rows: heading (rad) and yaw rate (rad/s) come first.
     pub fn new(
         record: &'a PreparedRecord,
-        number: usize,
+        record_index: usize,
         structure: &Structure,
         theta: &[f64],
         initial: [f64; 2],
         predicted: Option<&[[f64; MAX_STATES]]>,
     ) -> Self {
-        let response = structure.response(Some(number), theta);
+        let response = structure.response(Some(record_index), theta);
         let recorded = record.replay_signals(&response);
         let mut state = vec![0.0; response.dimension()];
         response.initialise(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
@@ -78,7 +78,7 @@ impl<'a> PredictedMotion<'a> {
         }
         Self {
             record,
-            number,
+            record_index,
             base: [theta[0], theta[1]],
             rudder_rate: slopes(&record.time, &rudder),
             transitions: intervals().map(|h| Transition::new(theta[0], h)).collect(),
