@@ -303,7 +303,7 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
     rows * rss / (rows - 2.0 * harmonics - 1.0).powi(2)
 }
 
-/// Fails for a basis whose coefficients cancel each other.
+/// The fitted series; fails above [`MAX_TRUSTED_CONDITION`], where the coefficients of its basis cancel each other.
 fn accept(fitted: FittedSeries) -> Result<FittedSeries, IdentifyError> {
     let (condition, limit) = (fitted.curve.condition, MAX_TRUSTED_CONDITION);
     if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }

@@ -202,7 +202,7 @@ fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     (0..=last).map(|row| slope(row.saturating_sub(1), (row + 1).min(last))).collect()
 }
 
-/// r² through a first-order filter, over its mean.
+/// r² over its mean through a first-order filter of time constant `lag` (s), from 0 at the first row.
 fn filtered_square(time: &[f64], r: &[f64], lag: f64) -> Vec<f64> {
     let mean = dot(r, r) / r.len() as f64;
     let mut filtered = vec![0.0; r.len()];
@@ -225,7 +225,7 @@ fn extend(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
     }
 }
 
-/// Projects a column off the basis.
+/// Projects a column off an orthonormal basis, in place.
 fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
     for direction in basis {
         let size = dot(direction, column);

@@ -146,7 +146,7 @@ impl OutputError {
         grid
     }
 
-    /// Stopping rules on all rows.
+    /// Goal of the last refinement, on all rows: the full tolerance, and no bar.
     fn goal(&self) -> Goal {
         Goal { tolerance: TOLERANCE, iterations: self.settings.iterations, bar: f64::INFINITY }
     }

@@ -207,7 +207,7 @@ impl AveragedModel<'_> {
     }
 }
 
-/// Result of a replay without a band.
+/// Errors of a replay on a record, as far as `depth` asks; without a band, and without errors under a fitted moment.
 fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
     let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);

@@ -207,7 +207,7 @@ impl PosteriorSearch<'_> {
         DVector::from_vec(all)
     }
 
-    /// Evaluates a point.
+    /// Residual, misfit and J = misfit + Σ (prior deviations)² at a point; J is infinite where it is not a number.
     fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
         let misfit = self.weights.misfit(&residual);

@@ -66,7 +66,7 @@ pub fn leave_one_out(
     all.unwrap_or_default()
 }
 
-/// Log evidence of the kept records plus log prior odds.
+/// Log evidence of a member fitted to the kept records, plus the log prior odds of its terms.
 fn log_posterior(fit: &StructureFit, member: &WeighedStructure) -> f64 {
     fit.evidence + (member.log_posterior - member.fit.evidence)
 }

@@ -95,7 +95,7 @@ fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> b
     power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN_NATS } else { 0.0 }
 }
 
-/// Criterion −2 log p + penalty of the best explanation.
+/// Criterion −2 log p + penalties of the best explanation by shapes; infinite without a shape analysis.
 fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
     shapes.as_ref().map_or(f64::INFINITY, |shapes| shapes.best.criterion)
 }

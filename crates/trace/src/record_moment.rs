@@ -110,13 +110,13 @@ impl<'a> RecordMoment<'a> {
         MomentErrors { bias: search(bias, MAX_REPLAYS[0]), slow: search(slow, MAX_REPLAYS[1]) }
     }
 
-    /// Residual at the observed rows, rad.
+    /// Recorded minus replayed heading at the observed rows, rad.
     fn residual(&self, replay: &Replay) -> DVector<f64> {
         let observed = &self.record.observed;
         DVector::from_iterator(observed.len(), observed.iter().map(|&row| replay.residual[row]))
     }
 
-    /// Rudder of the record plus a moment, rad.
+    /// Rudder of the record plus a moment with these values at the knots, linear between them, rad.
     fn rudder(&self, moment: [f64; KNOTS]) -> Option<Polyline> {
         let (start, interval) = (self.record.time[0], interval(self.record));
         let times = (0..KNOTS).map(|k| start + interval * k as f64).collect();
@@ -127,7 +127,7 @@ impl<'a> RecordMoment<'a> {
     }
 }
 
-/// Time between two knots, s.
+/// Time between two of the [`KNOTS`] knots, which span the record, s.
 fn interval(record: &PreparedRecord) -> f64 {
     record.duration() / (KNOTS - 1) as f64
 }

@@ -191,7 +191,7 @@ impl TraceParts<'_> {
         self.with_prime([k, t, NormalMixture { components: bias.collect() }.summary()].map(quantity))
     }
 
-    /// Physical parameters of a structure.
+    /// Entries of θ of one structure in physical units, with their standard deviations.
     fn parameters(&self, fit: &StructureFit) -> Vec<ParameterEntry> {
         let values = fit.structure.entries().into_iter().zip(fit.physical_values()).zip(&fit.theta);
         values.map(|((entry, (value, sd)), &fitted)| self.parameter(&entry, vec![(1.0, value, sd)], fitted)).collect()
@@ -394,7 +394,7 @@ impl TraceParts<'_> {
         }
     }
 
-    /// Whiteness of the residual of one model on the fitted records.
+    /// Whiteness test of the residual of one model, base or average, over all fitted records.
     fn whiteness(&self, model: fn(&RecordComparison) -> &ReplayResult) -> WhitenessEntry {
         let records = self.identification.iter().map(model).zip(self.trials);
         let series =

@@ -110,7 +110,7 @@ fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) 
     Some(residual_peak(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
-/// Innovations at the same times with the given values.
+/// Innovations with the values of another law, at the same times.
 fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
     all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }

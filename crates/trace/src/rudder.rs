@@ -128,7 +128,7 @@ fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// `true` if a residual is autocorrelated.
+/// `true` if the autocorrelation of a residual at a lag up to [`LAGS`] exceeds 4/√n and [`MAX_AUTOCORRELATION`].
 fn is_correlated(residual: &[f64]) -> bool {
     let products =
         |lag: usize| residual.iter().zip(&residual[lag.min(residual.len())..]).map(|(a, b)| a * b).sum::<f64>();

@@ -93,7 +93,7 @@ impl Profile {
         FrequencySweep { profile: self, turn, from, step, done: 0 }
     }
 
-    /// Sets the phasors of `fundamental`.
+    /// Sets the phasor of every row, (cos, sin) of ½wu, for w = `fundamental`.
     fn anchor(&mut self, fundamental: f64) {
         for (value, u) in self.phasor.iter_mut().zip(&self.rows.time) {
             *value = phasor(0.5 * fundamental * u);
@@ -203,13 +203,13 @@ fn cosine_share(fundamental: f64, duration: f64) -> f64 {
     (0.25 * fundamental * duration).min(FRAC_PI_2).sin().powi(2)
 }
 
-/// cos and sin of an angle.
+/// (cos, sin) of an angle, rad.
 fn phasor(angle: f64) -> [f64; 2] {
     let (s, c) = angle.sin_cos();
     [c, s]
 }
 
-/// ξ and sin w u from cos and sin of ½wu.
+/// ξ, which is cos w u stretched from its `share` to [−1, 1], and sin w u, from (cos, sin) of ½wu.
 fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }

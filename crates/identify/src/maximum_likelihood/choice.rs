@@ -200,7 +200,8 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     Ranges { duration: track.duration(), spacing, residual }
 }
 
-/// BIC of a point.
+/// BIC: restricted −2 log L plus log n per active entry of the noise, with n readings over all records; a declared
+/// rudder error does not count.
 fn bic(records: &[Record], point: &Point) -> f64 {
     let noise: usize = records
         .iter()
@@ -255,14 +256,15 @@ fn fit_laws(
 }
 
 impl Search<'_> {
-    /// Maximum likelihood from a start, with its BIC.
+    /// Maximum of the likelihood uphill from a start, preceded by its BIC.
     fn highest(&mut self, start: Point) -> Option<(f64, Maximum)> {
         let maximum = self.maximise(start)?;
         Some((bic(self.records, &maximum.point), maximum))
     }
 }
 
-/// Fits with every kind of moment.
+/// Fits with every moment in `kinds`, each from its best start at 1/T = `a`; `none` are the noise vectors without a
+/// moment.
 fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseVector]) -> Ranked {
     let mut none = none.to_vec();
     let mut all: Ranked = Vec::new();

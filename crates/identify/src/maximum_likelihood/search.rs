@@ -49,7 +49,7 @@ impl Ranges {
         }
     }
 
-    /// Minimum and maximum logarithm of an entry.
+    /// Minimum and maximum of the logarithm of an entry of the noise vector for this record.
     fn range(&self, vector: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
@@ -95,7 +95,7 @@ impl Search<'_> {
         evaluate(self.records, &[start]).pop()?
     }
 
-    /// Points at starts, two at a time.
+    /// Points at starts, computed two at a time; `None` for a start without a ship or a finite likelihood.
     fn points(&mut self, starts: &[Start]) -> impl Iterator<Item = Option<Point>> {
         let records = self.records;
         let evaluations = &mut self.evaluations;
@@ -251,7 +251,7 @@ impl Search<'_> {
         free
     }
 
-    /// Noise vectors after a step.
+    /// 1/T and noise vectors after a step of the free unknowns; the noise stays within its ranges.
     fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> Start {
         let by = |index: usize| free.iter().position(|&number| number == index).map_or(0.0, |k| step[k]);
         let mut index = SHARED_PARAMETERS;
@@ -311,7 +311,7 @@ fn reduced(information: &DMatrix<f64>, selected: &[usize]) -> Option<DMatrix<f64
     Some(pick(selected, selected) - &cross * inner.solve(&cross.transpose()))
 }
 
-/// Noise vector with the initial gyro error of a search.
+/// Noise vector with the gyro error from which a search begins: σ_r/σ = 1/(e √`spacing`).
 pub(super) fn gyro_start(ranges: &Ranges, vector: &NoiseVector) -> NoiseVector {
     ranges.with(vector, GYRO_INDEX, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

@@ -21,7 +21,7 @@ pub enum MomentChoice {
 }
 
 impl MomentChoice {
-    /// Kinds of moment that are fitted.
+    /// Kinds of moment that the choice admits.
     pub(super) fn kinds(self) -> &'static [MomentKind] {
         match self {
             Self::Chosen => &MomentKind::ALL,

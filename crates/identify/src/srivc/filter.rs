@@ -86,7 +86,7 @@ impl Filters {
         }
     }
 
-    /// Steps the filters from the row `before` to `row`.
+    /// Advances all filters from the row `before` to `row`, with rudder and heading linear between them.
     #[inline]
     fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;

@@ -49,7 +49,7 @@ impl TraceParts<'_> {
         shapes.named_shapes(|record| self.span(record)[1]).iter().map(entry).collect()
     }
 
-    /// Start and duration (s) of a record, or of the longest record.
+    /// Start and duration, s, of a record; of the longest record for what acts in all records (`None`).
     fn span(&self, record: Option<usize>) -> [f64; 2] {
         let records = &self.problem.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));

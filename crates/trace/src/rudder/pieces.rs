@@ -45,7 +45,7 @@ impl RudderPiece {
         self.angle + self.rate * (time - self.time)
     }
 
-    /// Least-squares line through some rows, level for a rest.
+    /// Least-squares line through the rows `from` to `to`, the last excluded; of rate 0 for a rest.
     fn fit(time: &[f64], angle: &[f64], from: usize, to: usize, is_stroke: bool) -> Self {
         let rows = (to - from) as f64;
         let mean = |values: &[f64]| values[from..to].iter().sum::<f64>() / rows;
@@ -134,7 +134,8 @@ fn pooled(values: &[(f64, f64)], penalty: f64) -> Vec<f64> {
     pooled
 }
 
-/// Pools the levels of rests and the rates of strokes.
+/// Pools levels of rests, and rates of strokes without their signs, that do not differ significantly; `sd` is that of a
+/// reading, rad.
 fn pool_gear(pieces: &mut [RudderPiece], sd: f64, penalty: f64) {
     let weight = 1.0 / (sd * sd);
     let rests: Vec<usize> = (0..pieces.len()).filter(|&k| !pieces[k].is_stroke && pieces[k].rows() > 1).collect();

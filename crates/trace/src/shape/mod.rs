@@ -202,7 +202,7 @@ impl<'a> ShapeProblem<'a> {
         Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 
-    /// Criterion under another law.
+    /// Criterion of the structure without shapes under another law; infinite if its columns are dependent.
     fn criterion_under(&self, law: &RandomLaw) -> f64 {
         let weights = self.point.weights(&law.colour);
         let whitened = WhitenedStructure::new(&self.linearised, &weights, law.freedom);

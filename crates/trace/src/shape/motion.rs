@@ -125,7 +125,7 @@ impl<'a> PredictedMotion<'a> {
     }
 }
 
-/// Linear interpolation of values at the observed rows.
+/// Value at a row, linear between the `value`s of the observed rows, and constant before the first and after the last.
 fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
     let after = record.observed.partition_point(|&observed| observed < row);
     let last = record.observed.len() - 1;
@@ -140,7 +140,7 @@ fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f6
     value(after - 1) * (1.0 - share) + value(after) * share
 }
 
-/// Running median.
+/// Running median over [`MEDIAN_ROWS`] rows; at the ends the first and the last value are repeated.
 fn medians(values: &[f64]) -> Vec<f64> {
     let half = MEDIAN_ROWS / 2;
     let at = |row: usize| {
@@ -152,7 +152,7 @@ fn medians(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Central differences of a signal.
+/// Derivative of a signal: central differences, one-sided at both ends.
 fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let at = |row: usize| {

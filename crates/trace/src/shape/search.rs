@@ -118,7 +118,7 @@ impl ShapeSearch<'_> {
         requested.into_par_iter().filter_map(candidate).collect()
     }
 
-    /// Columns of candidates, whitened under a law.
+    /// Columns of each candidate, whitened record by record under the law of index `law`.
     fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<HeadingColumn>> {
         let mut all: Vec<Vec<HeadingColumn>> = candidates.iter().map(|candidate| candidate.columns.clone()).collect();
         let columns = || all.iter().flatten().flatten();
@@ -132,7 +132,7 @@ impl ShapeSearch<'_> {
         all
     }
 
-    /// Structures with shapes appended, under every law.
+    /// Structure with shapes appended under every law; `None` where its columns are dependent.
     fn extended(&self, shapes: &[Arc<Candidate>]) -> Vec<Option<WhitenedStructure>> {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
         let extend = |(law, structure): (usize, &Option<WhitenedStructure>)| {
@@ -264,7 +264,7 @@ impl ShapeSearch<'_> {
         }
     }
 
-    /// Explanation without one shape, under the best law.
+    /// Explanation without the shape at `place`, under the law that is then best.
     fn without(&self, all: &Explanation, place: usize) -> Explanation {
         let mut shapes = all.shapes.clone();
         shapes.remove(place);
