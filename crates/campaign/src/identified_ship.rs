@@ -164,7 +164,7 @@ impl<'a> RecordFacts<'a> {
     }
 }
 
-/// Maximum absolute value.
+/// Maximum absolute value; 0 without values.
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }

@@ -179,7 +179,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     StudyCases { cases, sets: bench_sets(scenario, cells), skipped }
 }
 
-/// Records that are absent.
+/// Absent records of every set with the reason, each once.
 fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
     let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
     let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
@@ -193,7 +193,7 @@ fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
     distinct(sets.flat_map(of_set))
 }
 
-/// Sets of a study with their records.
+/// Sets of a study, the cells of one set joined: number of trials, and records, each once.
 fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {

@@ -205,7 +205,7 @@ impl DrawnSettings {
         Ok(Some((drawn, specification)))
     }
 
-    /// Specification with sampled values.
+    /// Specification of a trial in which the drawn keys have these values, one per draw.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
@@ -229,7 +229,7 @@ pub(crate) fn select_parts(document: &Table, parts: &[ScenarioPart]) -> Table {
     some
 }
 
-/// Settings of the points of a cell.
+/// Keys and values that the points of a cell set, in the order of the axes.
 fn settings<'a>(points: &'a [&sweep::SweepPoint]) -> impl DoubleEndedIterator<Item = &'a sweep::SweepSetting> {
     points.iter().flat_map(|point| &point.set)
 }

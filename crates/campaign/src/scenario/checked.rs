@@ -100,7 +100,7 @@ impl Scenario {
         Self::from_table(path, name, text, &document, seed)
     }
 
-    /// Resolves the table of a text.
+    /// Resolves the table of a scenario; a fault is shown at its place in the text. `seed` replaces that of the file.
     fn from_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
         let scenario = Self::from_document(document, name, folder).map_err(|fault| {

@@ -177,7 +177,7 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
     Ok(methods)
 }
 
-/// Procedure of one entry.
+/// Method, trace or null model of an entry. Fails unless exactly one is named, and for an invalid setting.
 fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFault> {
     match (&entry.method, &entry.trace, &entry.straight_on) {
         (Some(settings), None, None) => {
@@ -236,7 +236,7 @@ fn selection_from(menu: &[String]) -> Result<Selection, SettingsError> {
     Ok(Selection::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
 }
 
-/// Key of a method in a scenario.
+/// Identifier of a method: the key of its settings in a scenario.
 fn registry_id(settings: &IdentifierSettings) -> String {
     let table = toml::Table::try_from(settings).unwrap_or_default();
     table.keys().next().cloned().unwrap_or_default()

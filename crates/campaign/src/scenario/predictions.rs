@@ -43,13 +43,13 @@ pub(crate) struct RecordPredictWire {
 }
 
 impl RecordPredictWire {
-    /// Checks the number of draws.
+    /// Predictions of the validation records, which give the manoeuvres. Fails for a number of draws outside [`DRAWS`].
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         Ok(Predictions { manoeuvres: Vec::new(), draws: checked(self.draws)? })
     }
 }
 
-/// Checked number of draws.
+/// The number of draws; fails outside [`DRAWS`].
 fn checked(draws: u64) -> Result<usize, KeyFault> {
     let key = KeyPath::from_dotted("predict.draws");
     let fault = || KeyFault::new(key, draws, "expected 50 to 10000", "200 draws are enough for a 90 % interval");

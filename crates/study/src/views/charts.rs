@@ -241,7 +241,7 @@ impl<'a> ComparedMethods<'a> {
         remark.map(str::to_owned)
     }
 
-    /// Meaning of marks beyond the axes.
+    /// Note on the arrows at the axes, for a measure that is an error; `None` for any other.
     fn beyond(&self) -> Option<String> {
         self.measure.is_of_errors().then(|| CUT_NOTE.to_owned())
     }

@@ -37,7 +37,7 @@ pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     format!("{name}, a turning circle to {side} with {}° of rudder: {figures}", fixed(rudder_deg.abs(), 1))
 }
 
-/// Figures of merit of a predicted circle.
+/// Sentence on a predicted circle: advance, transfer and tactical diameter in ship lengths, with 90 % intervals.
 fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
     let figures = [
         ("advance", circle.advance_lengths),

@@ -180,7 +180,7 @@ fn replay(replayed: &RecordReplay) -> Panels {
     bands(&replayed.heading, Some(recorded), rudder)
 }
 
-/// Track, north over east.
+/// Curve of a track, north over east, from points of north and east.
 fn from_above(track: &[[f64; 2]]) -> PlotCurve {
     let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
     PlotCurve::new(east, north)
@@ -263,7 +263,7 @@ fn is_overshoot(name: &str) -> bool {
     name.ends_with("overshoot_deg")
 }
 
-/// Measured overshoots of replayed records.
+/// Row for every overshoot of a replayed record: the predicted interval, and below it the measured angle.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();
