@@ -110,15 +110,9 @@ fn the_score_is_the_derivative() {
         .map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true, None))
         .collect();
     for moment in MomentKind::ALL {
-        let vectors = [
-            NoiseVector { moment, log: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() },
-            NoiseVector {
-                moment,
-                has_rudder_error: true,
-                has_coloured_compass: true,
-                log: [-6.5, 3.0, -6.0, 1.0, -1.0],
-            },
-        ];
+        let plain = NoiseVector { moment, log: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() };
+        let log = [-6.5, 3.0, -6.0, 1.0, -1.0];
+        let vectors = [plain, NoiseVector { moment, has_rudder_error: true, has_coloured_compass: true, log }];
         let a = 0.063;
         let point = evaluate(&records, a, &vectors).expect("a fit");
         let derivatives = score_and_information(&records, &point).expect("a fit");
