@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use ship::angle::to_deg;
 use study::views::fit_page;
 use study::work::fit;
-use trial::reader::read_from;
+use trial::reader::read_from_reader;
 use trial::{Log, Quantity, ReadError, ReadRecord, ZigZag};
 
 /// Deviations, in standard deviations of the difference, within which two answers are one.
@@ -28,7 +28,7 @@ fn answer(reading: &ReadRecord) -> [Quantity; 2] {
 /// Reads a log from memory, one of two files from the folder.
 fn read(file: &File) -> Result<ReadRecord, ReadError> {
     match file.beside {
-        None => read_from(Path::new(file.name), file.bytes.as_slice(), None, None),
+        None => read_from_reader(Path::new(file.name), file.bytes.as_slice(), None, None),
         Some(beside) => {
             let path = |name| logs::folder().join(name);
             Log::open(&path(file.name), None, &[path(beside)])?.into_trial(None)
@@ -110,7 +110,7 @@ fn faults_of_instruments_leave_the_overshoots() {
 /// is none.
 fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let names = ["output-error", "maximum-likelihood"].map(str::to_owned);
-    let read = read_from(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|error| error.to_string())?;
+    let read = read_from_reader(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|e| e.to_string())?;
     let mut warnings = Warnings::default();
     warnings.extend(read.warnings);
     let methods = fit::methods(&names, None).expect("they are known");

@@ -9,7 +9,7 @@ use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{RngExt, SeedableRng};
 use trial::channel::Unit;
 use trial::names::{self, ColumnMeaning};
-use trial::reader::read_from;
+use trial::reader::read_from_reader;
 use trial::{Channel, Trial};
 
 /// Notations that are tried.
@@ -76,7 +76,7 @@ fn rows() -> Vec<[f64; 3]> {
 }
 
 fn read(name: &str, text: &str) -> Trial {
-    let reading = read_from(Path::new(name), text.as_bytes(), None, None);
+    let reading = read_from_reader(Path::new(name), text.as_bytes(), None, None);
     let begin: String = text.chars().take(300).collect();
     reading.unwrap_or_else(|error| panic!("{error}\n{begin}")).trial
 }

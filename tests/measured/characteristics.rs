@@ -56,7 +56,7 @@ fn characteristics_are_what_the_samples_show() {
 /// The HSVA headings hold for several rows and then step by up to 0.02 degrees, the Esso Osaka headings, from two
 /// antennas, jump by a degree or more.
 fn check_peaks(file: &str, trial: &Trial, zigzag: &ZigZag) {
-    let noise = zigzag.heading_noise.expect("enough rows to estimate it");
+    let noise = zigzag.heading_noise_sd.expect("enough rows to estimate it");
     let tolerance = if file.starts_with("esso") { from_deg(1.2) } else { from_deg(0.02) + 4.0 * noise };
     for overshoot in &zigzag.overshoots {
         let execute = &zigzag.executes[overshoot.execute];

@@ -143,7 +143,7 @@ fn mirror_images_of_one_hull_tell_the_same_physics() {
     let trials = ["kvlcc2_marin/zigzag_20.csv", "kvlcc2_marin/zigzag_-20.csv"].map(measured::record);
     let [Some(starboard), Some(port)] = trials else { return };
     for (trial, ratio) in [(starboard, 0.5), (port, 0.5)] {
-        let settings = trace::Settings { thorough: false, ..trace::Settings::default() };
+        let settings = trace::Settings { is_thorough: false, ..trace::Settings::default() };
         let analysis = trace::trace(std::slice::from_ref(&trial), &[], &settings).expect("a zig-zag has a base");
         let on = &analysis.identification[0];
         let [before, after] = [&on.before, &on.after].map(|on| on.errors.heading);

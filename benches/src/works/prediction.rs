@@ -1,4 +1,4 @@
-//! Prediction of a manoeuvre from a thousand sampled ships.
+//! Prediction of a manoeuvre from a thousand drawn ships.
 
 use document::{
     HeadingNoise, IdentifiedEffect, IdentifiedGear, IdentifiedShip, RandomMoment, ValidityRange, WeightedStructure,
@@ -11,7 +11,7 @@ use simulate::Manoeuvre;
 use crate::records::{K, T};
 use crate::work::{Work, WorkGroup};
 
-/// Number of sampled ships of a prediction.
+/// Number of drawn ships of a prediction.
 const DRAWS: usize = 1000;
 
 /// Model of a ship of 75 m at 6 m/s, with the covariance of an accurate 10/10 zig-zag.

@@ -389,7 +389,7 @@ fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
     design
 }
 
-/// Adds the Cramér–Rao bounds of all cells.
+/// Sets the Cramér–Rao bounds of K and T, %², of every cell.
 fn add_bounds(scenario: &Scenario, design: &mut Design) {
     let cells = design.cells.par_iter_mut().enumerate();
     cells.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));

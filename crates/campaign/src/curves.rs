@@ -58,7 +58,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         heading: angle_curve_deg(trial.time(), trial.heading()),
         // A thinned record keeps only its extremes; as points they would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS
-            && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
+            && zigzag.heading_noise_sd.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: angle_curve_deg(trial.time(), trial.rudder()),
         truth: None,
         executes: zigzag.executes.iter().map(execute).collect(),

@@ -197,7 +197,7 @@ pub(crate) struct TrialInput<'a> {
 }
 
 impl TrialInput<'_> {
-    /// Row of a method, and its duration.
+    /// Row of a method on the trial, with the reason if it failed, and the duration of its fit without the scores.
     fn row(&self, procedure: &Procedure, blank: StudyRow) -> (StudyRow, Duration) {
         let start = Instant::now();
         let (row, time) = match procedure {
@@ -324,7 +324,7 @@ fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
     }
 }
 
-/// Kind of failure of a trace.
+/// Failure of a trace in one word, for its row: `settings`, `not-finite`, or that of the fit of its base.
 pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
     match error {
         TraceError::Settings(_) | TraceError::NoCandidate { .. } => "settings",

@@ -98,7 +98,7 @@ impl ResultFolder {
     }
 }
 
-/// Random identifier of this process.
+/// Random number that is drawn once in this process.
 fn process() -> u64 {
     static NUMBER: OnceLock<u64> = OnceLock::new();
     *NUMBER.get_or_init(|| RandomState::new().hash_one(std::process::id()))

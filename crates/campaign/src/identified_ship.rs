@@ -26,7 +26,7 @@ pub struct RecordFacts<'a> {
     trials: &'a [Trial],
     gear: Option<IdentifiedGear>,
     /// Standard deviation of the heading readings, rad.
-    reading_noise: Option<f64>,
+    reading_noise_sd: Option<f64>,
     /// Zig-zag of each record; `None` for other manoeuvres.
     zigzags: Vec<Option<ZigZag>>,
     length: Option<f64>,
@@ -48,7 +48,7 @@ impl<'a> RecordFacts<'a> {
         Self {
             trials,
             gear: gear(trials, &zigzags),
-            reading_noise: reading_noise(&zigzags),
+            reading_noise_sd: reading_noise(&zigzags),
             zigzags,
             length: particular(|ship| ship.length),
             speed: particular(|ship| ship.speed),
@@ -91,7 +91,7 @@ impl<'a> RecordFacts<'a> {
     ) -> IdentifiedShip {
         let rates: Vec<&[f64]> = rates.collect();
         // The residual of a hull does not determine the noise of the readings.
-        let of_readings = self.reading_noise.filter(|_| !self.hulls.is_empty());
+        let of_readings = self.reading_noise_sd.filter(|_| !self.hulls.is_empty());
         IdentifiedShip {
             members,
             noise: HeadingNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
@@ -127,7 +127,7 @@ impl<'a> RecordFacts<'a> {
             particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
             covariance: matrix_rows(&hull.covariance),
-            moment: RandomYawMoment {
+            model_error_moment: RandomYawMoment {
                 deviation_rudder_rad: hull.moment.deviation,
                 correlation_s: hull.moment.correlation_time,
             },
@@ -164,7 +164,7 @@ impl<'a> RecordFacts<'a> {
     }
 }
 
-/// Maximum absolute value.
+/// Maximum absolute value; 0 without values.
 fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
@@ -185,7 +185,7 @@ pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identif
         covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
         degrees_of_freedom: covariance.degrees_of_freedom,
     };
-    let readings = estimate.noise.map(|noise| noise.heading_sd_rad).or(facts.reading_noise);
+    let readings = estimate.noise.map(|noise| noise.heading_sd_rad).or(facts.reading_noise_sd);
     let noise = HeadingNoise {
         heading_sd_rad: readings.unwrap_or_else(|| pooled_rms(&replays)),
         moment: estimate.noise.unwrap_or_default().moment,
@@ -227,7 +227,7 @@ fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedS
 /// Root mean square standard deviation of the heading readings, rad, independent of any model; `None` if a record does
 /// not determine it.
 fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
-    let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
+    let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise_sd.map(|sd| sd * sd);
     let sum: Option<f64> = zigzags.iter().map(square).sum();
     sum.map(|sum| (sum / zigzags.len() as f64).sqrt())
 }

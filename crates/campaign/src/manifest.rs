@@ -78,7 +78,7 @@ impl Manifest {
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
-            scenario_sha256: scenario.sha256.clone(),
+            scenario_sha256: scenario.file_sha256.clone(),
             design_sha256: scenario.design_sha256.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),

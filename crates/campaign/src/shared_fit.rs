@@ -77,7 +77,8 @@ struct SharedTrials<'a> {
     judges: Vec<Option<[&'a Trial; 2]>>,
 }
 
-/// Runs the trials of a shared fit, in order.
+/// Outcomes, in order, of trials that share their fitted records; a method is fitted once, and each trial has an equal
+/// part of its duration.
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutcome> {
     let split = |task: &TrialId| &set.splits[task.replicate as usize];
     let both = [&set.trials, set.without_spikes()];
@@ -103,14 +104,14 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutc
 }
 
 impl SharedTrials<'_> {
-    /// Rows of a method, one per trial.
+    /// Rows of a method, one per trial: one fit, judged by the validation record of each trial.
     fn rows(&self, method: usize, procedure: &Procedure) -> Vec<StudyRow> {
         let key = |task: &TrialId| engine::stream_key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
                 let judge = |trial| self.replayed(trial).map(|[judge, _]| judge.clone());
                 let held_out: Vec<Trial> = (0..self.judges.len()).filter_map(judge).collect();
-                let settings = ::trace::Settings { hulls: true, ..settings.clone() };
+                let settings = ::trace::Settings { fits_hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
                 Some(analysis.map(fit).map_err(|error| engine::trace_failure_kind(&error).into()))
@@ -154,7 +155,7 @@ impl SharedTrials<'_> {
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
     }
 
-    /// Row of a fit on a trial.
+    /// Row of a fit for one trial, with the errors on its validation record.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
         let judge = self.replayed(trial).map(|[_, cleaned]| cleaned);
         let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };

@@ -130,7 +130,7 @@ pub fn required_manifest(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
-/// JSON text of a file.
+/// JSON text of a file of the result folder, with a line end.
 fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Result<Vec<u8>, Failure> {
     let text = serde_json::to_string(content).on("describe", &folder.path().join(name))?;
     Ok((text + "\n").into_bytes())

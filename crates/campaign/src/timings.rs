@@ -102,7 +102,7 @@ impl Timings {
     }
 }
 
-/// Names of the timed items.
+/// Names of what is timed: the simulation, then every method.
 fn names(design: &Design) -> impl Iterator<Item = &str> {
     std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()))
 }

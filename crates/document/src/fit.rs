@@ -71,7 +71,7 @@ pub struct PredictedCircleEntry {
     pub rudder_deg: f64,
     /// `true` if rudder or yaw rate are beyond those of the records.
     pub extrapolated: bool,
-    /// Number of sampled ships.
+    /// Number of drawn ships.
     pub draws: usize,
     /// Advance at 90° of heading, ship lengths.
     pub advance_lengths: MedianEntry,
@@ -81,7 +81,7 @@ pub struct PredictedCircleEntry {
     pub tactical_diameter_lengths: MedianEntry,
 }
 
-/// Median of sampled ships.
+/// Median of drawn ships.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MedianEntry {
     /// Median.
@@ -154,7 +154,7 @@ pub struct FitDocument {
     /// Identified ship of every method with a covariance, for `study predict`; SI units and radians.
     #[serde(default)]
     pub ships: BTreeMap<String, IdentifiedShip>,
-    /// Earlier trials of `--prior`, with the check for a contradiction by the records.
+    /// Earlier trials given by `--prior`, and whether the records contradict them; absent without `--prior`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
     /// Comparison of terms between scales, if the records have several.

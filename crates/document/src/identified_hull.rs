@@ -63,7 +63,8 @@ pub struct IdentifiedHull {
     /// Covariance of the coefficients, by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Random moment of the model error.
-    pub moment: RandomYawMoment,
+    #[serde(rename = "moment")]
+    pub model_error_moment: RandomYawMoment,
     /// Root mean square of the initial yaw rate of its replays minus that of the straight approach, rad/s: an error of
     /// the form in the first seconds of a manoeuvre. 0 if no record begins straight.
     #[serde(default)]
@@ -128,10 +129,11 @@ impl IdentifiedHull {
     #[must_use]
     pub fn scaled_to(&self, length: f64, speed: f64) -> Self {
         let second = length / speed * self.speed_m_s / self.length_m;
-        let moment = RandomYawMoment { correlation_s: self.moment.correlation_s * second, ..self.moment };
         let propeller_per_s = self.propeller_per_s.map(|rate| rate / second);
-        let beginning_yaw_rate_rad_s = self.beginning_yaw_rate_rad_s / second;
-        Self { length_m: length, speed_m_s: speed, propeller_per_s, moment, beginning_yaw_rate_rad_s, ..self.clone() }
+        let mut scaled = Self { length_m: length, speed_m_s: speed, propeller_per_s, ..self.clone() };
+        scaled.model_error_moment.correlation_s *= second;
+        scaled.beginning_yaw_rate_rad_s /= second;
+        scaled
     }
 
     /// Hull at another loading and its approach speed, from the `expected` coefficients μ given the trials of this

@@ -185,7 +185,7 @@ impl IdentifiedShip {
         let mut calm = self.clone();
         calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
-            (hull.moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
+            (hull.model_error_moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
             if let Some(place) = hull.coefficients.iter().position(|coefficient| is_wind_coefficient(&coefficient.key))
             {
                 hull.coefficients[place].value = 0.0;

@@ -32,7 +32,7 @@ pub struct ImoFormEntry {
     /// `true` if a predicted manoeuvre is outside the range of the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extrapolated: Option<bool>,
-    /// Share of the sampled ships of a prediction that meet the limit.
+    /// Share of the drawn ships of a prediction that meet the limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probability_of_passing: Option<f64>,
     /// Origin of the value.

@@ -334,7 +334,7 @@ pub struct TraceDocument {
     pub single_records: Option<SingleRecords>,
     /// Identified ship for `study predict`; SI units and radians.
     pub ship: IdentifiedShip,
-    /// Earlier trials of `--prior`, with the check for a contradiction by the records.
+    /// Earlier trials given by `--prior`, and whether the records contradict them; absent without `--prior`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earlier_trials: Option<EarlierTrials>,
     /// Description of the scaling of records of several scales to one.

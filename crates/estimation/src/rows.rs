@@ -62,7 +62,8 @@ impl<const C: usize, const L: usize, const M: usize> Kernel for Orthonormalise<'
     }
 }
 
-/// Changes all rows; returns the products of all columns, after the change, with column `lane`.
+/// Applies `change` to every row and returns the scalar products Σ `row[k] row[lane]` of every column k of the changed
+/// rows with column `lane`.
 #[inline(always)]
 fn products_after<const C: usize>(
     rows: &mut [[f64; C]],

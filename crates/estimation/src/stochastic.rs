@@ -38,7 +38,7 @@ impl<const N: usize> Step<N> {
 
 impl<const N: usize> System<N> {
     /// Sample path: the readings without sensor noise, from standard normal numbers.
-    pub fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
+    pub fn sample_path(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
         let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.process_noise)).collect();
         let mut draw = |root: &[[f64; N]; N]| -> [f64; N] {
             let numbers: [f64; N] = std::array::from_fn(|_| normal());

@@ -4,7 +4,7 @@
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;
 
-/// Squared magnitudes of the [`fourier_transform`] of `x`; overwrites `x`.
+/// |X_k|² for k = 0 … N/2, not divided by N (N times Ljung's periodogram); overwrites `x`, empty for an empty `x`.
 pub fn power_spectrum(x: &mut [f64]) -> Vec<f64> {
     fourier_transform(x).into_iter().map(|z| z.norm_sqr()).collect()
 }

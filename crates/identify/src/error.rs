@@ -103,7 +103,8 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
-    /// Reason why an outside estimator gave no estimate, on one printable line; made by [`IdentifyError::outside`].
+    /// Reason why an outside estimator gave no estimate, on one printable line, from
+    /// [`IdentifyError::external_estimator`].
     #[error("outside: {0}")]
     Outside(String),
 }
@@ -125,7 +126,7 @@ const MAX_REASON_CHARS: usize = 80;
 impl IdentifyError {
     /// Failure of an outside estimator with its message, on one line of at most 80 characters. Runs of blanks become a
     /// single blank, and invisible characters are shown as escapes.
-    pub fn outside(message: &str) -> Self {
+    pub fn external_estimator(message: &str) -> Self {
         let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
         let shown = |c: char| match c {
             ' '..='~' => c.to_string(),
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn an_outside_message_is_a_single_short_line() {
-        let row = |message: &str| IdentifyError::outside(message).row_text().into_owned();
+        let row = |message: &str| IdentifyError::external_estimator(message).row_text().into_owned();
         assert_eq!(row(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
         assert_eq!(row("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
         assert_eq!(row(" \n"), "outside: no reason given");

@@ -89,7 +89,7 @@ pub enum Uncertainty {
 /// #     }
 /// #     delta = if psi * delta.signum() > 10.0 { -delta } else { delta };
 /// # }
-/// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// # let read = trial::reader::read_from_reader("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// let estimate = output_error::Settings::default().build()?.identify(&[read.trial])?;
 /// let [low, high] = estimate.T().ci95.expect("output error has an interval");
 /// assert!(low < estimate.T().value && estimate.T().value < high);

@@ -195,8 +195,7 @@ impl FourierProjected {
             Order::Fixed(harmonics) => return accept(fourier::fit(time, heading, harmonics, fundamental)?),
             Order::Gcv { reach } => reach,
         };
-        let searched = SEARCH_HARMONICS.min((time.len() - 2) / 2);
-        let choice = fundamental.choose(time, heading, searched)?;
+        let choice = fundamental.choose(time, heading, SEARCH_HARMONICS.min((time.len() - 2) / 2))?;
         let zigzag = TAU / zero_crossing_period(time, heading)?;
         let needed = (reach.min(MIN_REACH) * zigzag / choice.fundamental).ceil() as usize;
         if needed > MAX_HARMONICS {
@@ -304,7 +303,7 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
     rows * rss / (rows - 2.0 * harmonics - 1.0).powi(2)
 }
 
-/// Fails for a basis whose coefficients cancel each other.
+/// The fitted series; fails above [`MAX_TRUSTED_CONDITION`], where the coefficients of its basis cancel each other.
 fn accept(fitted: FittedSeries) -> Result<FittedSeries, IdentifyError> {
     let (condition, limit) = (fitted.curve.condition, MAX_TRUSTED_CONDITION);
     if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }

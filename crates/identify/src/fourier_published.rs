@@ -104,7 +104,8 @@ impl FourierPublished {
         fourier::fit(&samples.time, &samples.heading, self.settings.harmonics, &self.settings.fundamental)
     }
 
-    /// Instants of one trial from which triples are sampled.
+    /// Rudder, yaw rate and yaw acceleration of the fitted series at the instants of a trial from which triples are
+    /// sampled; [`Selection::WellConditioned`] omits the ends of the record and a moving rudder.
     fn instants(&self, trial: &Trial, samples: &Samples, fitted: &FittedSeries) -> Vec<RegressionPoint> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];

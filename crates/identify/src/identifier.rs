@@ -20,7 +20,7 @@ use crate::estimate::Estimate;
 /// #     }
 /// #     delta = if psi * delta.signum() > 10.0 { -delta } else { delta };
 /// # }
-/// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// # let read = trial::reader::read_from_reader("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// // A zig-zag of a ship with K = 0.1 1/s and T = 16 s, read from a table.
 /// let record = read.trial;
 /// for settings in kempf_identify::registry::default_settings() {

@@ -53,7 +53,7 @@ pub struct LackOfFit {
     /// Root mean square of the residual with nine fitted ship terms, rad, corrected for their number.
     pub with_ship_terms: f64,
     /// Standard deviation of the white noise of the heading, rad.
-    pub noise: f64,
+    pub noise_sd: f64,
     /// `true` if the correlation of neighbouring residuals is within the range of white noise.
     pub is_white: bool,
     /// Delay from the recorded to the acting rudder, s, from the term in δ' alone; negative for a rudder recorded late.
@@ -101,18 +101,18 @@ impl LackOfFit {
         let lag1 = robust::lag1_autocorrelation(pieces.iter().map(Vec::as_slice));
         let is_white = !robust::is_coloured(lag1, residual.len());
         // The final residual includes all of the noise; the local fits underestimate the bends of a coarse heading.
-        let (noise, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
+        let (noise_sd, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
         let is_reversed = trials.iter().any(|trial| reversals(trial.rudder()) >= MIN_REVERSALS);
         let is_identified = is_reversed && delay.abs() <= MAX_DELAY_RATIO * response.T().abs();
         let with_delay = is_identified.then_some(delayed);
-        let lack = Self { residual: before, with_ship_terms: after, noise, is_white, delay, with_delay };
-        (before.is_finite() && after.is_finite() && noise.is_finite()).then_some(lack)
+        let lack = Self { residual: before, with_ship_terms: after, noise_sd, is_white, delay, with_delay };
+        (before.is_finite() && after.is_finite() && noise_sd.is_finite()).then_some(lack)
     }
 
     /// Share, from 0 to 1, of the residual beyond the noise that the ship terms do not explain: small for a missing
     /// term, large for random moments. `None` for a white residual.
     pub fn unexplained_share(&self) -> Option<f64> {
-        let beyond = |rms: f64| (rms * rms - self.noise * self.noise).max(0.0);
+        let beyond = |rms: f64| (rms * rms - self.noise_sd * self.noise_sd).max(0.0);
         let all = beyond(self.residual);
         (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
     }
@@ -173,8 +173,8 @@ impl RecordTerms {
     }
 }
 
-/// Heading of s'' = −a s' + f, with f linear between rows and s' = `rate` at the start. For a < 0 it starts at the end
-/// and runs backwards, so that it does not grow; the two differ by the motion of an initial yaw rate.
+/// Heading ψ, rad, of ψ'' = −a ψ' + f from ψ = 0 and ψ' = `rate`, f in rad/s² and linear between rows. For a < 0 it is
+/// computed backwards from the last row, where these conditions then apply, so that it does not grow.
 fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Vec<f64> {
     let rows = time.len();
     let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };
@@ -202,7 +202,7 @@ fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     (0..=last).map(|row| slope(row.saturating_sub(1), (row + 1).min(last))).collect()
 }
 
-/// r² through a first-order filter, over its mean.
+/// r² over its mean through a first-order filter of time constant `lag` (s), from 0 at the first row.
 fn filtered_square(time: &[f64], r: &[f64], lag: f64) -> Vec<f64> {
     let mean = dot(r, r) / r.len() as f64;
     let mut filtered = vec![0.0; r.len()];
@@ -225,7 +225,7 @@ fn extend(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
     }
 }
 
-/// Projects a column off the basis.
+/// Projects a column off an orthonormal basis, in place.
 fn remove(basis: &[Vec<f64>], column: &mut [f64]) {
     for direction in basis {
         let size = dot(direction, column);
@@ -246,7 +246,7 @@ mod tests {
             let case = Case { T: time_constant, K: 0.1 * time_constant.signum(), noise_deg: 0.1, ..Case::default() };
             let lack = LackOfFit::from_response(&[case.trial()], &case.ship()).expect("a zig-zag");
             assert!(lack.is_white && lack.unexplained_share().is_none(), "{lack:?}");
-            assert!((lack.residual / lack.noise - 1.0).abs() < 0.2, "{lack:?}");
+            assert!((lack.residual / lack.noise_sd - 1.0).abs() < 0.2, "{lack:?}");
         }
     }
 
@@ -274,6 +274,6 @@ mod tests {
         let case = Case { noise_deg: 0.01, ..Case::default() };
         let off = FirstOrder { K_over_T: 1.02 * case.ship().K_over_T, ..case.ship() };
         let lack = LackOfFit::from_response(&[case.trial()], &off).expect("a zig-zag");
-        assert!(lack.residual > 10.0 * lack.noise && lack.with_ship_terms < 1.2 * lack.noise, "{lack:?}");
+        assert!(lack.residual > 10.0 * lack.noise_sd && lack.with_ship_terms < 1.2 * lack.noise_sd, "{lack:?}");
     }
 }

@@ -146,7 +146,7 @@ impl OutputError {
         grid
     }
 
-    /// Stopping rules on all rows.
+    /// Goal of the last refinement, on all rows: the full tolerance, and no bar.
     fn goal(&self) -> Goal {
         Goal { tolerance: TOLERANCE, iterations: self.settings.iterations, bar: f64::INFINITY }
     }
@@ -201,8 +201,7 @@ impl Identifier for OutputError {
         }
         let tracks =
             trials.iter().map(|trial| checked_track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
-        let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
-        self.fit(tracks, finest)
+        self.fit(tracks, trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min))
     }
 }
 

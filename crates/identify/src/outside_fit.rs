@@ -53,7 +53,7 @@ impl OutsideFit {
             return Err(IdentifyError::NotAShip { inverse_time: inverse_T, gain: K_over_T });
         }
         if !rudder_bias.is_finite() {
-            return Err(IdentifyError::outside("the rudder bias is not a finite number"));
+            return Err(IdentifyError::external_estimator("the rudder bias is not a finite number"));
         }
         let (a, b) = (inverse_T, K_over_T);
         let jacobian = Matrix3::new(0.0, -a * a, 0.0, a, -a * b, 0.0, 0.0, 0.0, 1.0);

@@ -121,8 +121,7 @@ impl Profile {
         let [b, q] = self.steering.into();
         let mut information = Matrix3::zeros();
         for part in &mut self.parts {
-            let coefficients = part.coefficients(b, q);
-            information += part.information(inverse_time, &coefficients);
+            information += part.information(inverse_time, &part.coefficients(b, q));
         }
         information
     }
@@ -189,7 +188,7 @@ impl TrialColumns {
         self.removed[2] = project(&self.columns.homogeneous, &mut self.heading);
     }
 
-    /// Products of the projected columns (∂ψ/∂a, G, H).
+    /// Information XᵀX of (1/T, b, b δ_r), with the columns ∂ψ/∂a, G and H projected off the initial state.
     fn information(&mut self, inverse_time: f64, coefficients: &Coefficients) -> Matrix3<f64> {
         self.track.sensitivity(inverse_time, coefficients, &mut self.sensitivity);
         project(&self.columns.homogeneous, &mut self.sensitivity);

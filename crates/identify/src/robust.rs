@@ -42,7 +42,7 @@ pub(crate) fn is_coloured(lag1: f64, rows: usize) -> bool {
     lag1.abs() > MAX_WHITE_CORRELATION.max(3.0 / (rows as f64).sqrt())
 }
 
-/// Lag-1 autocorrelation of residuals, pooled over trials.
+/// Lag-1 autocorrelation Σ eₖ eₖ₊₁ / Σ eₖ² of residuals over all trials; 0 for a residual of zero.
 pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     let square: f64 = residuals.clone().map(|trial| dot(trial, trial)).sum();
     let cross: f64 = residuals.map(|trial| dot(trial.get(1..).unwrap_or(&[]), trial)).sum();

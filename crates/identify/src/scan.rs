@@ -140,7 +140,7 @@ impl estimation::lanes::Kernel for Sweep<'_> {
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let rudder = &track.rudder;
         let backward = is_backward(inverse_time[0]);
-        for TrackStep { from, to, duration: step, rudder_rate: rate, .. } in track.steps(backward) {
+        for TrackStep { from_row, to_row, duration: step, rudder_rate: rate, .. } in track.steps(backward) {
             if durations_differ(duration, step) {
                 duration = step;
                 for lane in 0..LANES {
@@ -149,7 +149,7 @@ impl estimation::lanes::Kernel for Sweep<'_> {
                     (phi2[lane], phi3[lane]) = (transition.phi2, transition.phi3);
                 }
             }
-            let (delta, psi) = (rudder[from], heading[to]);
+            let (delta, psi) = (rudder[from_row], heading[to_row]);
             for lane in 0..LANES {
                 f[lane] += phi1[lane] * f_rate[lane];
                 f_rate[lane] *= decay[lane];

@@ -111,7 +111,7 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
         residual: recommendation.residual(),
         residual_deg: degrees(|lack| lack.residual),
         with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
-        noise_deg: degrees(|lack| lack.noise),
+        noise_deg: degrees(|lack| lack.noise_sd),
         rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
         set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
         straight_lines_deg,

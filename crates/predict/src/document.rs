@@ -24,7 +24,7 @@ pub struct PredictDocument {
     pub schema: String,
     /// Models of the mixture.
     pub models: Vec<ModelWeight>,
-    /// Number of sampled ships.
+    /// Number of drawn ships.
     pub draws: usize,
     /// `true` if the weather of the records was left out.
     pub calm: bool,

@@ -1,4 +1,4 @@
-//! Ships sampled from the normal law of the coefficients of a hull of three degrees of freedom.
+//! Ships drawn from the normal law of the coefficients of a hull of three degrees of freedom.
 
 use document::{IdentifiedHull, IdentifiedShipError};
 use nalgebra::{DMatrix, DVector};
@@ -15,7 +15,7 @@ use crate::root::covariance_root;
 /// used.
 const MAX_TRIES: usize = 100;
 
-/// Hull from which ships are sampled.
+/// Hull from which ships are drawn.
 #[derive(Debug, Clone)]
 pub(crate) struct HullSampler {
     pub stored: IdentifiedHull,
@@ -126,7 +126,7 @@ mod tests {
         mixture.predict(&kind, draws, true).expect("a turn")
     }
 
-    /// A ship with hulls is sampled from them by their weights and has a track.
+    /// A ship with hulls is drawn from them by their weights and has a track.
     #[test]
     fn hulls_take_the_place_of_the_structures() {
         let mut stored = ship();
@@ -182,7 +182,7 @@ mod tests {
         for (small, other) in small.iter().zip([other[0] * time, other[1] * ratio, other[2], other[3]]) {
             assert!((small - other).abs() <= 1e-12 * small.abs(), "{small} {other}");
         }
-        assert_eq!(large.moment.correlation_s, stored.moment.correlation_s * time);
+        assert_eq!(large.model_error_moment.correlation_s, stored.model_error_moment.correlation_s * time);
         assert_eq!(large.beginning_yaw_rate_rad_s, stored.beginning_yaw_rate_rad_s / time);
         assert_eq!(large.particulars, stored.particulars);
     }

@@ -24,7 +24,7 @@ pub struct PredictedCriterion {
     /// Predicted value.
     #[serde(flatten)]
     pub interval: PredictionInterval,
-    /// Share of the sampled ships within the limit; a ship without the characteristic counts as outside.
+    /// Share of the drawn ships within the limit; a ship without the characteristic counts as outside.
     pub probability_of_passing: f64,
     /// `true` if the manoeuvre is beyond the range of the records.
     pub extrapolated: bool,

@@ -1,6 +1,6 @@
 //! Prediction of manoeuvres of an identified ship, with intervals.
 //!
-//! A fit gives a model with a covariance and a noise law. Ships are sampled from it, each is steered through the
+//! A fit gives a model with a covariance and a noise law. Ships are drawn from it, each is steered through the
 //! manoeuvre, and the results are medians with intervals of 50 and 90 %. An interval includes the errors of the
 //! parameters, the structures that the records do not distinguish, the random moment of one trial, the rudder rate and
 //! the yaw rate of the approach; the share of each source is reported.

@@ -1,6 +1,6 @@
 //! A straight line by least squares.
 
-/// Straight line through points, with its residual variance.
+/// Least-squares line y = ȳ + slope (x − x̄) of n points; the residual variance has n − 2 degrees of freedom.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StraightLine {
     /// Mean abscissa and mean ordinate.

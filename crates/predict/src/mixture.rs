@@ -1,4 +1,4 @@
-//! Ships sampled from the models of one or several files: a structure by its probability, parameters by their
+//! Ships drawn from the models of one or several files: a structure by its probability, parameters by their
 //! covariance, and the random disturbances of one trial. Every source can be switched off, so that its share of an
 //! interval can be computed. Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a
 //! tutorial, Statistical Science 14, 382–417.
@@ -134,7 +134,7 @@ impl ShipMixture {
         Ok(Self { parts, files, shares, timescale, is_independent: false, shares_trial_errors: false, wind: None })
     }
 
-    /// The same ships, sampled with random numbers independent of `other`. If each ship has one hull, converted from
+    /// The same ships, drawn with random numbers independent of `other`. If each ship has one hull, converted from
     /// the hull of `other`, the estimation errors of that hull stay common to both.
     pub fn independent_of(self, other: &Self) -> Self {
         let shares_trial_errors =
@@ -290,8 +290,8 @@ impl StructureSampler {
 
     /// Random yaw moment of the form of the hull, or of the structure.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
-        let Some(moment) = self.hull.as_ref().map(|hull| hull.stored.moment) else { return ship.noise.moment };
-        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = moment;
+        let Some(hull) = &self.hull else { return ship.noise.moment };
+        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = hull.stored.model_error_moment;
         match sd_rudder_rad > 0.0 {
             true => RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s },
             false => RandomMoment::None,
@@ -382,7 +382,7 @@ mod tests {
         assert_eq!(mixture.likeliest().weight, 0.3);
     }
 
-    /// Ships sampled from a hull begin with the initial error of its replays; ships in a calm do not.
+    /// Ships drawn from a hull begin with the initial error of its replays; ships in a calm do not.
     #[test]
     fn hulls_begin_with_the_error_of_their_replays() {
         let rate = 1e-3;

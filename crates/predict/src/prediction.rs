@@ -83,7 +83,7 @@ pub struct Prediction {
     pub kind: Manoeuvre,
     /// Figures of merit by name; the unit is in the name.
     pub figures: IndexMap<String, PredictedFigure>,
-    /// Number of samples that did not complete the manoeuvre.
+    /// Number of drawn ships that did not complete the manoeuvre.
     pub lost: usize,
     /// Sizes of a turning circle whose interval reaches below zero: the records do not determine them.
     #[serde(skip)]

@@ -279,7 +279,7 @@ mod tests {
     use ship::angle::from_deg;
     use trial::{Channel, Columns};
 
-    /// Records of ships sampled as in the prediction lie within its 90 % intervals nine times out of ten.
+    /// Records of ships drawn as in the prediction lie within its 90 % intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
         let mixture = testing::mixture(testing::identified_ship());

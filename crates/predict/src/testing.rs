@@ -77,7 +77,7 @@ pub(crate) fn hull(form: &str) -> IdentifiedHull {
         particulars: [("length-m".into(), length_m), ("speed-m-s".into(), speed_m_s)].into(),
         covariance: (0..coefficients.len()).map(row).collect(),
         coefficients,
-        moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
+        model_error_moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
         beginning_yaw_rate_rad_s: from_deg(0.01),
         trial_hull: None,
     }

@@ -34,7 +34,7 @@ impl Identifier for PyIdentifier {
             self.0.bind(py).call1((records,))?.extract()
         };
         let (K, T, rudder_bias, covariance) =
-            Python::attach(|py| ask(py).map_err(|raised| IdentifyError::outside(&raised.to_string())))?;
+            Python::attach(|py| ask(py).map_err(|raised| IdentifyError::external_estimator(&raised.to_string())))?;
         let errors = covariance
             .map_or(OutsideErrors::Unknown, |rows| OutsideErrors::Covariance(Matrix3::from_row_slice(&rows.concat())));
         OutsideFit { K, T, rudder_bias, errors }.estimate()

@@ -153,11 +153,11 @@ pub fn record_of(
     options: Vec<String>,
 ) -> PyResult<PyRecord> {
     let table = table(&columns).map_err(raised)?;
-    patiently(py, move || of_table(&name, &table, &request(options)?, None))
+    patiently(py, move || record_from_table(&name, &table, &request(options)?, None))
 }
 
 /// Record `name` from the text of a table and of its sidecar.
-pub fn of_table(
+pub fn record_from_table(
     name: &str,
     table: &[u8],
     options: &ReadingOptions,

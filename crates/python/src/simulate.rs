@@ -8,7 +8,7 @@ use study::options::{Replicates, SimulateRequest};
 use study::work::simulate::{RecordFiles, records, tasks};
 
 use crate::options::request;
-use crate::record::{PyRecord, of_table};
+use crate::record::{PyRecord, record_from_table};
 use crate::scene::ScenarioInput;
 use crate::wait::patiently;
 
@@ -27,7 +27,7 @@ pub fn simulate(
         let asked = SimulateRequest { scenario: scene.path().to_owned(), cell, replicate };
         let whole = request(Vec::new())?;
         let read = |RecordFiles { name, table, sidecar, truth }: RecordFiles| {
-            Ok((of_table(&name, &table, &whole, sidecar.as_deref())?, truth))
+            Ok((record_from_table(&name, &table, &whole, sidecar.as_deref())?, truth))
         };
         let trials = tasks(&scenario, &asked)?
             .into_par_iter()

@@ -75,19 +75,19 @@ pub(crate) struct TextLine {
     pub text: String,
     pub size: f64,
     pub colour: RGBColor,
-    pub bold: bool,
+    pub is_bold: bool,
     pub anchor: HPos,
     /// `true` if turned a quarter to the left, as the title of a vertical axis.
-    pub turned: bool,
+    pub is_turned: bool,
 }
 
 impl TextLine {
     pub(crate) fn new(text: impl Into<String>, size: f64, anchor: HPos) -> Self {
-        Self { text: text.into(), size, colour: INK, bold: false, anchor, turned: false }
+        Self { text: text.into(), size, colour: INK, is_bold: false, anchor, is_turned: false }
     }
 
     pub(crate) fn width(&self) -> f64 {
-        text_width(&self.text, self.size, self.bold)
+        text_width(&self.text, self.size, self.is_bold)
     }
 
     /// Left and right end of an unturned text at `x`.
@@ -102,8 +102,8 @@ impl TextLine {
 
     /// The same style for plotters.
     pub(crate) fn style(&self) -> TextStyle<'static> {
-        let weight = if self.bold { FontStyle::Bold } else { FontStyle::Normal };
-        let turn = if self.turned { FontTransform::Rotate270 } else { FontTransform::None };
+        let weight = if self.is_bold { FontStyle::Bold } else { FontStyle::Normal };
+        let turn = if self.is_turned { FontTransform::Rotate270 } else { FontTransform::None };
         let font = FontDesc::new(FontFamily::Name(FAMILY), self.size * UNITS_PER_POINT, weight).transform(turn);
         font.color(&self.colour).pos(Pos::new(self.anchor, VPos::Center))
     }

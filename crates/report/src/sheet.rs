@@ -94,7 +94,7 @@ impl Sheet {
         let canvas = Canvas { area: svg.clone().into_drawing_area(), svg };
         let mut sheet = Self { theme: theme.clone(), canvas, y: 0.5 * theme.small_font, edge: 0.0 };
         if !finding.is_empty() {
-            let text = TextLine { bold: true, ..TextLine::new("", theme.title_font, HPos::Center) };
+            let text = TextLine { is_bold: true, ..TextLine::new("", theme.title_font, HPos::Center) };
             let lines = balanced(finding, theme.title_font, true, theme.width - 2.0 * theme.small_font);
             sheet.lines(lines, theme.width / 2.0, text, 1.2)?;
             sheet.y += 0.7 * theme.title_font;
@@ -248,7 +248,7 @@ impl Sheet {
             let text = TextLine::new(title.as_str(), theme.label_font, HPos::Center);
             let x = self.edge + 0.5 * (theme.small_font + theme.label_font);
             let middle = (first.rect.y + last.rect.bottom()) / 2.0;
-            self.canvas.text((x, middle), &TextLine { turned: true, ..text })?;
+            self.canvas.text((x, middle), &TextLine { is_turned: true, ..text })?;
         }
         self.y = lowest + 0.55 * theme.label_font;
         Ok(charts)
@@ -293,7 +293,7 @@ impl Sheet {
         mesh.draw()?;
         let chart = Chart::new(&context, self.canvas.clone(), [x.side.axis.clone(), y.axis.clone()]);
         for (value, label) in x.side.axis.ticks.iter().filter(|_| labelled[1] && x.is_turned) {
-            let text = TextLine { turned: true, ..TextLine::new(label.as_str(), theme.tick_font, HPos::Right) };
+            let text = TextLine { is_turned: true, ..TextLine::new(label.as_str(), theme.tick_font, HPos::Right) };
             self.canvas.text((chart.page_x(*value).unwrap_or(f64::NAN), chart.rect.bottom() + 2.0 * tick), &text)?;
         }
         Ok(chart)

@@ -207,7 +207,7 @@ impl<R: EffectReal> Response<R> {
     #[inline]
     fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
-        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts_on.rudder) {
+        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts_on.transforms_rudder) {
             rudder = R::effect_equations(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
@@ -215,12 +215,12 @@ impl<R: EffectReal> Response<R> {
         let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
-            if place.acts_on.scale {
+            if place.acts_on.scales_response {
                 let factor = R::effect_equations(effect).base_factors(p, z, &now);
                 scale.damping = scale.damping * factor.damping;
                 scale.gain = scale.gain * factor.gain;
             }
-            if place.acts_on.moment {
+            if place.acts_on.adds_moment {
                 acceleration = acceleration + R::effect_equations(effect).yaw_acceleration(p, z, &now);
             }
         }
@@ -326,7 +326,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
                 if !z.is_empty() {
                     R::effect_equations(effect).rates(p, z, &now, before, &mut rate[place.states()]);
                 }
-                if place.acts_on.rudder {
+                if place.acts_on.transforms_rudder {
                     before = R::effect_equations(effect).rudder(p, z, before);
                 }
             }

@@ -78,7 +78,7 @@ impl BeforeExecute {
 #[derive(Debug, Clone)]
 pub struct Simulation {
     /// Name of the scenario, included in the origin of the record.
-    pub scenario: String,
+    pub scenario_name: String,
     /// Ship.
     pub ship: SimulatedShip,
     /// Approach to the first execute.
@@ -153,7 +153,7 @@ impl Simulation {
     /// Trial in a calm, with perfect helmsman, gear and instruments, recorded completely at one row a second.
     pub fn new(ship: SimulatedShip, manoeuvre: Manoeuvre) -> Self {
         Self {
-            scenario: String::from("simulation"),
+            scenario_name: String::from("simulation"),
             ship,
             approach: BeforeExecute::default(),
             manoeuvre,
@@ -374,8 +374,8 @@ impl Simulation {
     /// Name and origin of the record of `key`.
     pub(crate) fn name_and_origin(&self, StreamKey { cell, replicate, .. }: &StreamKey) -> (String, Origin) {
         let (cell, replicate) = (*cell, *replicate);
-        let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
-        (format!("{}-{cell}-{replicate}", self.scenario), origin)
+        let origin = Origin::Simulated { scenario: self.scenario_name.clone(), cell, replicate };
+        (format!("{}-{cell}-{replicate}", self.scenario_name), origin)
     }
 
     /// The same record with the declared noise, weather and particulars.

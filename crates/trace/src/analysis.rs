@@ -29,7 +29,7 @@ use crate::noise::CorrelatedNoise;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayDepth;
 use crate::report;
-use crate::residual_analysis::{Innovations, ResidualAnalysis, innovations, sums_of_squares};
+use crate::residual_analysis::{Innovations, ResidualAnalysis, heading_error_squares, innovations};
 use crate::rudder::{self, RudderNoise};
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -64,7 +64,7 @@ pub struct Analysis {
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
-/// Channels kept by `Settings::heading_alone`.
+/// Channels kept by `Settings::uses_heading_alone`.
 const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
 
 /// Records reduced to the channels [`COMMON`].
@@ -127,7 +127,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// #     order = if psi * order > 20.0 { -order } else { order };
 /// #     delta = next;
 /// # }
-/// # let read = trial::reader::read_from("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// # let read = trial::reader::read_from_reader("run.csv".as_ref(), table.as_bytes(), None, None)?;
 /// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
 /// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
 /// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");
@@ -147,7 +147,7 @@ pub fn trace_with_watcher(
     watcher: &dyn Watcher,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
-    if settings.heading_alone {
+    if settings.uses_heading_alone {
         return analyse(&of_heading(trials), &of_heading(validation), settings, watcher);
     }
     analyse(trials, validation, settings, watcher)
@@ -177,8 +177,8 @@ fn analyse(
     let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
-    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.thorough)?;
-    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
+    let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
     let leave_one_out = if is_folded { folds() } else { Vec::new() };
     let parts = report::TraceParts {
@@ -260,11 +260,11 @@ fn compare_fitted(
     law: &NoiseLaw,
     members: &[(f64, &StructureFit)],
     hulls: &[HullEstimate],
-    &Settings { thorough, .. }: &Settings,
+    &Settings { is_thorough, .. }: &Settings,
     time: f64,
 ) -> Result<(Vec<RecordComparison>, bool), TraceError> {
     let response = &base.estimate.response;
-    let depth = if thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
+    let depth = if is_thorough { ReplayDepth::Windows } else { ReplayDepth::Heading };
     let compare = |(number, trial): (usize, &Trial)| {
         let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;
@@ -287,7 +287,7 @@ fn compare_fitted(
 /// Replaces the replay of the average by the replay of the base if the average has the larger heading error, as under a
 /// random moment that no replay can reproduce. `true` if it was replaced.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
-    let [before, after] = sums_of_squares(all);
+    let [before, after] = heading_error_squares(all);
     let keeps_base = after > before;
     if keeps_base {
         for comparison in all {

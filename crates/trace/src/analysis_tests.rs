@@ -111,7 +111,7 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     }
     assert!(horizons[3..].iter().all(|entry| entry.after_deg < 0.5 * entry.before_deg), "{horizons:?}");
     assert!(error.identification[0].horizons.is_empty());
-    let quick = Settings { thorough: false, ..Settings::default() };
+    let quick = Settings { is_thorough: false, ..Settings::default() };
     let short = damped(TrialPlan { rows: 26, ..TrialPlan::default() });
     let analysis = trace(&[damped(TrialPlan::default())], &[short], &quick).expect("a base");
     let windows: Vec<f64> =
@@ -214,7 +214,7 @@ fn a_formula_is_named_where_it_acts() {
 fn both_rules_name_what_is_clear() {
     let trial = damped(TrialPlan::default());
     for rule in Rule::ALL {
-        let settings = Settings { rule, thorough: false, ..Settings::default() };
+        let settings = Settings { rule, is_thorough: false, ..Settings::default() };
         let analysis = trace(std::slice::from_ref(&trial), &[], &settings).expect("a base");
         assert_eq!(named(&analysis), ["nonlinear_damping"], "{}", rule.as_str());
     }

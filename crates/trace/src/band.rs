@@ -147,10 +147,11 @@ impl ResidualSampler {
         })
     }
 
-    /// Sample of the residual M (w + J d), rad.
+    /// One draw of the residual M (w + J d), rad, at the observed rows: noise w and parameter errors d, projected off
+    /// the initial state by M.
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
-        let coloured: Vec<f64> = self.system.sample(&mut normal).into_iter().map(|x| x * self.deviation).collect();
+        let coloured: Vec<f64> = self.system.sample_path(&mut normal).into_iter().map(|x| x * self.deviation).collect();
         let mut residual = coloured.clone();
         let change = match &self.errors {
             ParameterErrors::OfRecord(weights) => {

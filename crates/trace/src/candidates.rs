@@ -79,11 +79,11 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
         for record in places.into_iter().filter(is_open) {
             let about = record_scales(records, trials, time, &records[record.unwrap_or(0)]);
             let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
-            candidates.push(Term { effect, record, priors, log_odds: 0.0 });
+            candidates.push(Term { effect, record_index: record, priors, log_odds: 0.0 });
         }
     }
     let forms = |id: &str, record: Option<usize>| {
-        candidates.iter().filter(|term| term.effect.id() == id && term.record == record).count() as f64
+        candidates.iter().filter(|term| term.effect.id() == id && term.record_index == record).count() as f64
     };
     let weighted = |term: &Term| {
         let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
@@ -91,7 +91,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
             (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_MOTION_EFFECT,
             (false, _) => PRIOR_PROBABILITY,
         };
-        let probability = prior / forms(term.effect.id(), term.record);
+        let probability = prior / forms(term.effect.id(), term.record_index);
         Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })
     };
     candidates.iter().map(weighted).collect()
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn a_trace_says_that_a_calm_is_declared() {
         let [calm, _] = trials();
-        let settings = Settings { thorough: false, ..Settings::default() };
+        let settings = Settings { is_thorough: false, ..Settings::default() };
         let analysis = trace(&[calm], &[], &settings).expect("a base");
         for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveHeading.id()] {
             let entry = analysis.document.candidates.iter().find(|entry| entry.id == id).expect("on the list");

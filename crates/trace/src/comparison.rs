@@ -37,9 +37,9 @@ pub struct ReplayResult {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BandCoverage {
     /// Number of measured headings inside the band.
-    pub inside: usize,
+    pub headings_inside: usize,
     /// Number of measured headings.
-    pub total: usize,
+    pub headings: usize,
     /// 99 % interval of the share inside (Wilson 1927), for the effective number of headings n (1 − ρ)/(1 + ρ) with the
     /// lag-1 autocorrelation ρ of the inside flags, because neighbouring headings are correlated.
     pub interval: [f64; 2],
@@ -54,19 +54,19 @@ const QUANTILE_99: f64 = 2.575_829_303_548_901;
 impl BandCoverage {
     /// Coverage from flags in order of time, `true` for a heading inside; `None` without headings.
     pub fn from_flags(inside: &[bool]) -> Option<Self> {
-        let (count, total) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
-        let share = (total > 0).then(|| count as f64 / total as f64)?;
+        let (headings_inside, headings) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
+        let share = (headings > 0).then(|| headings_inside as f64 / headings as f64)?;
         let off: Vec<f64> = inside.iter().map(|&inside| f64::from(u8::from(inside)) - share).collect();
         let cross: f64 = off.windows(2).map(|pair| pair[0] * pair[1]).sum();
         let square: f64 = off.iter().map(|off| off * off).sum();
         let correlation = if square > 0.0 { (cross / square).max(0.0) } else { 0.0 };
-        let independent = total as f64 * (1.0 - correlation) / (1.0 + correlation);
-        Some(Self { inside: count, total, interval: wilson_interval(share, independent, QUANTILE_99) })
+        let independent = headings as f64 * (1.0 - correlation) / (1.0 + correlation);
+        Some(Self { headings_inside, headings, interval: wilson_interval(share, independent, QUANTILE_99) })
     }
 
     /// Share of the headings inside the band.
     pub fn share(&self) -> f64 {
-        self.inside as f64 / self.total as f64
+        self.headings_inside as f64 / self.headings as f64
     }
 
     /// `true` if the coverage is consistent with the nominal 95 %.
@@ -100,8 +100,8 @@ impl From<&ReplayResult> for ErrorsEntry {
             horizon_rmse_deg: horizon.into(),
             band_coverage_95: on.coverage().map(|coverage| coverage.share()),
             band_width_95_deg: on.width().map(to_deg),
-            with_own_bias_deg: errors.with_moment.map(|with| to_deg(with.bias)),
-            with_own_moment_deg: errors.with_moment.map(|with| to_deg(with.slow)),
+            with_own_bias_deg: errors.fitted_moment_errors.map(|with| to_deg(with.bias)),
+            with_own_moment_deg: errors.fitted_moment_errors.map(|with| to_deg(with.slow)),
         }
     }
 }
@@ -171,8 +171,8 @@ impl AveragedModel<'_> {
         starts.push(before.replay.initial());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
-            before.errors.with_moment = Some(moment.base_errors(&before.replay));
-            after.errors.with_moment = Some(moment.average_errors(&self.average(), &after.replay));
+            before.errors.fitted_moment_errors = Some(moment.base_errors(&before.replay));
+            after.errors.fitted_moment_errors = Some(moment.average_errors(&self.average(), &after.replay));
         }
         Ok(RecordComparison { before, after })
     }
@@ -207,7 +207,7 @@ impl AveragedModel<'_> {
     }
 }
 
-/// Result of a replay without a band.
+/// Errors of a replay on a record, as far as `depth` asks; without a band, and without errors under a fitted moment.
 fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
     let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);
@@ -224,7 +224,7 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
         yaw_rate,
         overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
         windows,
-        with_moment: None,
+        fitted_moment_errors: None,
     };
     ReplayResult { replay, errors, band: None }
 }
@@ -241,7 +241,7 @@ mod tests {
             BandCoverage::from_flags(&inside).expect("headings")
         };
         let (scattered, swing) = (outside(|row| row % 10 == 0), outside(|row| row >= 180));
-        assert_eq!((scattered.inside, swing.inside), (180, 180));
+        assert_eq!((scattered.headings_inside, swing.headings_inside), (180, 180));
         assert!(!scattered.is_nominal() && swing.is_nominal(), "{scattered:?} {swing:?}");
         assert!(outside(|_| false).is_nominal() && !outside(|_| true).is_nominal());
         assert_eq!(BandCoverage::from_flags(&[]), None);

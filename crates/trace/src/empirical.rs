@@ -114,7 +114,7 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
     all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
         let CandidateEffect { effect, priors } = Monomial { powers, size }.candidate(&about)?;
-        Some(Arc::new(Term { effect, record: None, priors, log_odds: LOG_ODDS }))
+        Some(Arc::new(Term { effect, record_index: None, priors, log_odds: LOG_ODDS }))
     })
 }
 

@@ -20,7 +20,7 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 /// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoppingRule {
-    /// Maximum number of steps.
+    /// Maximum number of accepted Levenberg–Marquardt steps; the fit then ends without convergence, at the best point.
     pub max_steps: usize,
     /// Predicted decrease of J below which the fit ends.
     pub min_decrease: f64,
@@ -207,7 +207,7 @@ impl PosteriorSearch<'_> {
         DVector::from_vec(all)
     }
 
-    /// Evaluates a point.
+    /// Residual, misfit and J = misfit + Σ (prior deviations)² at a point; J is infinite where it is not a number.
     fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
         let misfit = self.weights.misfit(&residual);
@@ -302,8 +302,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f
             false => law.cdf(room).ln() + 0.5 * push * push,
         }
     };
-    let ends: f64 = priors.iter().enumerate().map(inside).sum();
-    -0.5 * at.value + constants + volume + ends
+    -0.5 * at.value + constants + volume + priors.iter().enumerate().map(inside).sum::<f64>()
 }
 
 /// Maximum a posteriori estimate of a structure.

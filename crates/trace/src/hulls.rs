@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::comparison::RecordComparison;
-use crate::residual_analysis::{ResidualAnalysis, sums_of_squares};
+use crate::residual_analysis::{ResidualAnalysis, heading_error_squares};
 use crate::settings::Settings;
 
 /// Hulls that fit the records about as well as the structures, with earlier trials as priors. No hulls without length
@@ -16,13 +16,13 @@ pub fn fit(
     comparisons: &[RecordComparison],
     residual_analysis: &ResidualAnalysis,
 ) -> Vec<HullEstimate> {
-    if !settings.hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
+    if !settings.fits_hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
     hull::supported_hulls(
         hull::fit_all(trials, &settings.earlier),
-        (sums_of_squares(comparisons)[1] / rows as f64).sqrt(),
+        (heading_error_squares(comparisons)[1] / rows as f64).sqrt(),
     )
 }
 

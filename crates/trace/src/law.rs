@@ -102,7 +102,8 @@ impl<'a> LinearisedFit<'a> {
         Some((factor, step))
     }
 
-    /// Adds the priors to normal equations.
+    /// Adds the prior of every unknown: its precision p to the diagonal, and −p times the offset from the prior mean to
+    /// the right-hand side.
     fn add_prior(&self, normal: &mut NormalEquations) {
         for (k, &(precision, offset)) in self.prior.iter().enumerate() {
             normal.matrix[(k, k)] += precision;
@@ -127,7 +128,7 @@ impl<'a> LinearisedFit<'a> {
         EstimatedNoiseLaw { law, criterion, waves_gain: 0.0 }
     }
 
-    /// Normal equations and sum of squares of one record.
+    /// Normal equations of one record alone, and its whitened residual sum of squares, as a list of one.
     fn record_normal(&self, record: usize, all: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let alone = Linearisation { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
         let weights =

@@ -66,7 +66,7 @@ pub fn leave_one_out(
     all.unwrap_or_default()
 }
 
-/// Log evidence of the kept records plus log prior odds.
+/// Log evidence of a member fitted to the kept records, plus the log prior odds of its terms.
 fn log_posterior(fit: &StructureFit, member: &WeighedStructure) -> f64 {
     fit.evidence + (member.log_posterior - member.fit.evidence)
 }
@@ -84,12 +84,12 @@ fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
     }
     let mut terms = Vec::new();
     for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
-        if term.record == Some(omitted) {
+        if term.record_index == Some(omitted) {
             continue;
         }
         theta.extend_from_slice(&fit.theta[range]);
         let mut kept = term.as_ref().clone();
-        kept.record = kept.record.map(|record| if record > omitted { record - 1 } else { record });
+        kept.record_index = kept.record_index.map(|index| if index > omitted { index - 1 } else { index });
         terms.push(kept.into());
     }
     (Structure { records: structure.records - 1, terms, ..*structure }, theta)

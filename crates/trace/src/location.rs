@@ -32,7 +32,7 @@ pub struct Location {
 
 impl Location {
     /// Random moment in addition to named effects and shapes; `None` if the rudder noise explains it.
-    pub fn moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
+    pub fn unexplained_random_moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
         let is_of_rudder = moment.white.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
@@ -95,7 +95,7 @@ fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> b
     power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN_NATS } else { 0.0 }
 }
 
-/// Criterion −2 log p + penalty of the best explanation.
+/// Criterion −2 log p + penalties of the best explanation by shapes; infinite without a shape analysis.
 fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
     shapes.as_ref().map_or(f64::INFINITY, |shapes| shapes.best.criterion)
 }

@@ -44,7 +44,7 @@ impl Analysis {
                 |residual: &[f64]| base[number].iter().zip(residual).map(|(base, other)| base - other).collect();
             let mut explanations = Vec::new();
             if let Some((_, best)) = model.first().filter(|(_, fit)| !fit.structure.terms.is_empty()) {
-                let acting = best.structure.terms.iter().filter(|term| term.record.is_none_or(|only| only == number));
+                let acting = best.structure.terms.iter().filter(|term| term.record_index.is_none_or(|k| k == number));
                 let effects = acting.map(|term| (term.effect.id(), term.effect.form())).collect();
                 let rows = self.problem.records[number].observed.len();
                 let mut mean = vec![0.0; rows];

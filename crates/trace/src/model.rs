@@ -32,7 +32,7 @@ pub struct Term {
     /// Effect.
     pub effect: Arc<dyn Effect>,
     /// Index of the record in which the effect acts; `None` for all records.
-    pub record: Option<usize>,
+    pub record_index: Option<usize>,
     /// Priors of the parameters.
     pub priors: Vec<Prior>,
     /// Log prior odds.
@@ -45,7 +45,7 @@ pub type TermName = (&'static str, &'static str, Option<usize>);
 impl Term {
     /// Identifier, form and record.
     pub fn name(&self) -> TermName {
-        (self.effect.id(), self.effect.form(), self.record)
+        (self.effect.id(), self.effect.form(), self.record_index)
     }
 
     /// Parameter values at which the effect is absent; shape parameters at their prior means.
@@ -67,7 +67,7 @@ pub struct ModelParameter {
     /// Prior distribution, in the unit of the parameter.
     pub prior: Prior,
     /// Index of the record to which the parameter belongs; `None` for all records.
-    pub record: Option<usize>,
+    pub record_index: Option<usize>,
 }
 
 /// Relative tolerance for "at its bound": a step that ends there adds a rounding error.
@@ -132,18 +132,18 @@ impl Structure {
 
     /// Entries of θ.
     pub fn entries(&self) -> Vec<ModelParameter> {
-        let base = |k: usize, sd: f64, record| ModelParameter {
+        let base = |k: usize, sd: f64, record_index| ModelParameter {
             parameter: &BASE_PARAMETERS[k],
             prior: Prior::normal(&BASE_PARAMETERS[k], 0.0, sd),
-            record,
+            record_index,
         };
         let scale = [BASE_SD[0] / self.time, BASE_SD[1] / (self.time * self.time), BIAS_SD];
         let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETER_COUNT).map(|k| base(k, scale[k], None)).collect();
         entries.extend((0..self.deviations()).map(|record| base(2, RECORD_BIAS_SD, Some(record))));
         for term in &self.terms {
             let parameters = term.effect.parameters().iter().zip(&term.priors);
-            let record = term.record;
-            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter { parameter, prior, record }));
+            let record_index = term.record_index;
+            entries.extend(parameters.map(|(parameter, &prior)| ModelParameter { parameter, prior, record_index }));
         }
         entries
     }
@@ -186,7 +186,7 @@ impl Structure {
 
     /// `true` if an entry of θ acts in a record.
     pub fn acts_in(entry: &ModelParameter, record: usize) -> bool {
-        entry.record.is_none_or(|number| number == record)
+        entry.record_index.is_none_or(|number| number == record)
     }
 
     /// Entries of θ that are given relative to another one: index, index of the reference.
@@ -226,7 +226,7 @@ impl Structure {
     /// Structure and parameters for one fitted record; with `None` for any other record of the ship.
     pub fn for_record(&self, record: Option<usize>, theta: &[f64]) -> (Self, Vec<f64>) {
         let kept = self.terms.iter().filter(|term| Self::applies(term, record));
-        let terms = kept.map(|term| Arc::new(Term { record: None, ..term.as_ref().clone() })).collect();
+        let terms = kept.map(|term| Arc::new(Term { record_index: None, ..term.as_ref().clone() })).collect();
         let mut values: Vec<f64> = self.response_indices(record).into_iter().map(|place| theta[place]).collect();
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             values[2] += theta[BASE_PARAMETER_COUNT + record];
@@ -237,7 +237,7 @@ impl Structure {
     /// `true` if a term applies to a fitted record, or to any other record (`None`).
     fn applies(term: &Term, record: Option<usize>) -> bool {
         match record {
-            Some(record) => term.record.is_none_or(|number| number == record),
+            Some(record) => term.record_index.is_none_or(|number| number == record),
             None => !term.effect.is_time_dependent(),
         }
     }
@@ -306,7 +306,7 @@ mod tests {
             let term = |effect: &Arc<dyn Effect>| {
                 let priors = effect.parameters().iter().map(|parameter| Prior::normal(parameter, 0.0, 1.0)).collect();
                 let only = only.filter(|_| effect.is_time_dependent());
-                Arc::new(Term { effect: Arc::clone(effect), record: only, priors, log_odds: 0.0 })
+                Arc::new(Term { effect: Arc::clone(effect), record_index: only, priors, log_odds: 0.0 })
             };
             let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();
             let structure = Structure::base(records, 13.0).with_terms(terms);

@@ -61,7 +61,7 @@ pub fn named_effects(structures: &Structures, threshold: f64, selection: &Select
     all
 }
 
-/// Effect in its most probable form, without aliases.
+/// Naming of an effect: its most probable form, the other forms of at least [`MIN_PROBABILITY`], and no aliases.
 fn named_effect(structures: &Structures, (id, record): EffectKey, probability: f64) -> EffectNaming {
     let is_form = |name: &&TermName| name.0 == id && name.2 == record;
     let mut forms: Vec<(TermName, f64)> =

@@ -62,7 +62,8 @@ impl CorrelatedNoise {
         (0..SMOOTH_MOMENT_CORRELATION_SHARES.len()).map(Self::SmoothMoment)
     }
 
-    /// Kinds of the noise laws: random moments, then errors of the heading.
+    /// Noise laws: white moment, walk and gusts, then compass errors and smooth model errors. The
+    /// [`smooth_moments`](Self::smooth_moments) are not among them.
     pub fn all() -> impl Iterator<Item = Self> {
         let gusts = (0..GUST_CORRELATION_SHARES.len()).map(Self::OrnsteinUhlenbeck);
         let compass = (0..COMPASS_CORRELATION_SHARES.len()).map(Self::Compass);

@@ -185,7 +185,7 @@ fn signal(time: &[f64], values: &[f64]) -> Option<Polyline> {
     Polyline::new(pick(time), pick(values)).ok()
 }
 
-/// Unwrapped angles, rad; NaN values are kept and skipped.
+/// Angles without jumps of 2π, rad; NaN values are kept and skipped.
 fn unwrapped(angles: &[f64]) -> Vec<f64> {
     let mut last = None;
     angles

@@ -110,13 +110,13 @@ impl<'a> RecordMoment<'a> {
         MomentErrors { bias: search(bias, MAX_REPLAYS[0]), slow: search(slow, MAX_REPLAYS[1]) }
     }
 
-    /// Residual at the observed rows, rad.
+    /// Recorded minus replayed heading at the observed rows, rad.
     fn residual(&self, replay: &Replay) -> DVector<f64> {
         let observed = &self.record.observed;
         DVector::from_iterator(observed.len(), observed.iter().map(|&row| replay.residual[row]))
     }
 
-    /// Rudder of the record plus a moment, rad.
+    /// Rudder of the record plus a moment with these values at the knots, linear between them, rad.
     fn rudder(&self, moment: [f64; KNOTS]) -> Option<Polyline> {
         let (start, interval) = (self.record.time[0], interval(self.record));
         let times = (0..KNOTS).map(|k| start + interval * k as f64).collect();
@@ -127,7 +127,7 @@ impl<'a> RecordMoment<'a> {
     }
 }
 
-/// Time between two knots, s.
+/// Time between two of the [`KNOTS`] knots, which span the record, s.
 fn interval(record: &PreparedRecord) -> f64 {
     record.duration() / (KNOTS - 1) as f64
 }
@@ -201,21 +201,21 @@ mod tests {
     fn a_moment_of_the_record_is_no_error_of_the_ship() {
         let drifting = [moved(&plain(1, 10.0), |t| 1e-4 * t)];
         let errors = |moment: fn(f64) -> f64, thorough: bool| {
-            let settings = Settings { thorough, ..Settings::default() };
+            let settings = Settings { is_thorough: thorough, ..Settings::default() };
             let analysis = trace(&drifting, &[moved(&plain(2, 15.0), moment)], &settings).expect("a base");
             let effects = &analysis.document.effects;
             assert!(effects.iter().any(|effect| effect.id == "moment_drift"), "{effects:?}");
             [&analysis.validation[0].before, &analysis.validation[0].after].map(|on| on.errors.clone())
         };
         let [base, average] = errors(|_| 0.01, true);
-        let [bias, slow] = deg(average.with_moment.expect("a thorough analysis"));
+        let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
         assert!(average.heading.to_degrees() > 2.0 && bias < 0.12 && slow < 0.06, "{average:?}");
-        assert!(base.with_moment.is_some_and(|with| with.bias < 0.5 * base.heading), "{base:?}");
+        assert!(base.fitted_moment_errors.is_some_and(|with| with.bias < 0.5 * base.heading), "{base:?}");
         let hurried = errors(|_| 0.01, false);
-        assert!(hurried.iter().all(|on| on.with_moment.is_none()));
+        assert!(hurried.iter().all(|on| on.fitted_moment_errors.is_none()));
         assert_eq!(hurried.map(|on| on.heading), [base.heading, average.heading], "the plain errors stay");
         let [_, average] = errors(|t| 0.01 * (t / 80.0).sin(), true);
-        let [bias, slow] = deg(average.with_moment.expect("a thorough analysis"));
+        let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
         assert!(bias > 0.4 && slow < 0.07, "{bias} and {slow} deg");
     }
 }

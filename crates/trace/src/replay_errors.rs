@@ -72,7 +72,7 @@ pub struct ReplayErrors {
     /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
     /// Heading errors with a fitted moment of the record, on held-out records.
-    pub with_moment: Option<MomentErrors>,
+    pub fitted_moment_errors: Option<MomentErrors>,
 }
 
 impl ReplayErrors {

@@ -111,8 +111,9 @@ impl TraceParts<'_> {
             },
             unexplained: UnexplainedEntry {
                 present: self.residual_analysis.is_unexplained,
-                signature: residual_peak
-                    .map(|s| sentences::residual_peak_sentence(s, &self.trials[s.record].title()) + &self.bands()),
+                signature: residual_peak.map(|s| {
+                    sentences::residual_peak_sentence(s, &self.trials[s.record_index].title()) + &self.bands()
+                }),
             },
             disturbance,
             located,
@@ -190,7 +191,7 @@ impl TraceParts<'_> {
         self.with_prime([k, t, NormalMixture { components: bias.collect() }.summary()].map(quantity))
     }
 
-    /// Physical parameters of a structure.
+    /// Entries of θ of one structure in physical units, with their standard deviations.
     fn parameters(&self, fit: &StructureFit) -> Vec<ParameterEntry> {
         let values = fit.structure.entries().into_iter().zip(fit.physical_values()).zip(&fit.theta);
         values.map(|((entry, (value, sd)), &fitted)| self.parameter(&entry, vec![(1.0, value, sd)], fitted)).collect()
@@ -203,7 +204,7 @@ impl TraceParts<'_> {
             true => quantity(NormalMixture { components: parts }.summary()),
             false => Quantity::without_uncertainty(parts[0].1),
         };
-        self.number(entry.parameter, quantity, entry.record, entry.is_at_bound(fitted))
+        self.number(entry.parameter, quantity, entry.record_index, entry.is_at_bound(fitted))
     }
 
     fn number(&self, parameter: &Parameter, value: Quantity, record: Option<usize>, at_bound: bool) -> ParameterEntry {
@@ -393,7 +394,7 @@ impl TraceParts<'_> {
         }
     }
 
-    /// Whiteness of the residual of one model on the fitted records.
+    /// Whiteness test of the residual of one model, base or average, over all fitted records.
     fn whiteness(&self, model: fn(&RecordComparison) -> &ReplayResult) -> WhitenessEntry {
         let records = self.identification.iter().map(model).zip(self.trials);
         let series =

@@ -15,7 +15,7 @@ use crate::structures::Structures;
 use crate::weights::NoiseLaw;
 
 /// Sums of squared heading errors over all records, rad²: base, average.
-pub fn sums_of_squares(all: &[RecordComparison]) -> [f64; 2] {
+pub fn heading_error_squares(all: &[RecordComparison]) -> [f64; 2] {
     let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
     let before = all.iter().map(|comparison| square(&comparison.before.errors)).sum();
     [before, all.iter().map(|comparison| square(&comparison.after.errors)).sum()]
@@ -77,7 +77,7 @@ impl ResidualAnalysis {
         let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
         let innovations = innovations(problem, &best.fit.residual, &full.law);
         let is_noise = are_noise(&innovations) && identification.iter().all(is_covered);
-        let [before, after] = sums_of_squares(identification);
+        let [before, after] = heading_error_squares(identification);
         let is_credible = is_noise || after < before;
         let rows: f64 = identification.iter().map(|fitted| fitted.after.errors.rows as f64).sum();
         let white =
@@ -91,7 +91,7 @@ impl ResidualAnalysis {
         let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
         // In a calm there is no random yaw moment, so an estimated random moment is unexplained.
-        let is_calm = location.moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
+        let is_calm = location.unexplained_random_moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
         let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
         let residual_peak = is_left.then(|| largest_residual_peak(identification, trials)).flatten();
@@ -110,7 +110,7 @@ fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) 
     Some(residual_peak(number, &replay.time, &replay.residual, heading, rudder, trial.sampling_period()))
 }
 
-/// Innovations at the same times with the given values.
+/// Innovations with the values of another law, at the same times.
 fn with_values(all: Vec<Innovations>, values: &[Vec<f64>]) -> Vec<Innovations> {
     all.into_iter().zip(values).map(|(record, values)| Innovations { values: values.clone(), ..record }).collect()
 }

@@ -6,7 +6,7 @@ use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualPeak {
     /// Index of the record.
-    pub record: usize,
+    pub record_index: usize,
     /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
     /// Strongest line of the spectrum; `None` if there is none.
@@ -27,7 +27,7 @@ const HEADING_BANDS: usize = 4;
 
 /// Peak of the residual (rad) of one record: time (s), residual, heading and rudder (rad) by row, `spacing` in s.
 pub fn residual_peak(
-    number: usize,
+    record_index: usize,
     time: &[f64],
     residual: &[f64],
     heading: &[f64],
@@ -69,7 +69,7 @@ pub fn residual_peak(
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or(([0.0; 2], 0.0));
     let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
-    ResidualPeak { record: number, span, line, heading: largest, side_rms: [on(-1.0), on(1.0)], rms: whole }
+    ResidualPeak { record_index, span, line, heading: largest, side_rms: [on(-1.0), on(1.0)], rms: whole }
 }
 
 #[cfg(test)]

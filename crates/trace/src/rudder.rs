@@ -91,7 +91,7 @@ fn smoothed(trial: &Trial) -> Option<(Trial, RudderNoise)> {
         return None;
     }
     let path: Vec<f64> =
-        pieces.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t))).collect();
+        pieces.iter().flat_map(|p| time[p.from_row..p.end_row].iter().map(|t| p.angle_at(*t))).collect();
     let error = error_of(time, angle, &path, &pieces, rounding)?;
     let clean = trial.clone().with_rudder(path)?;
     let is_nearer = log_likelihood(trial)? > log_likelihood(&clean)? + MIN_GAIN;
@@ -128,7 +128,7 @@ fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// `true` if a residual is autocorrelated.
+/// `true` if the autocorrelation of a residual at a lag up to [`LAGS`] exceeds 4/√n and [`MAX_AUTOCORRELATION`].
 fn is_correlated(residual: &[f64]) -> bool {
     let products =
         |lag: usize| residual.iter().zip(&residual[lag.min(residual.len())..]).map(|(a, b)| a * b).sum::<f64>();
@@ -149,11 +149,11 @@ fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], r
     let row_duration = |row: usize| 0.5 * (time[(row + 1).min(last)] - time[row.saturating_sub(1)]);
     let mut growth = 0.0;
     for piece in pieces {
-        let durations = (piece.from..piece.to).map(row_duration);
+        let durations = (piece.from_row..piece.end_row).map(row_duration);
         let squares: f64 = durations.clone().map(|h| h * h).sum();
         growth += variance * squares;
         if piece.is_stroke && rounding > 0.0 {
-            let hidden = rounding * rounding - square(piece.from, piece.to) / piece.rows() as f64;
+            let hidden = rounding * rounding - square(piece.from_row, piece.end_row) / piece.rows() as f64;
             growth += hidden.max(0.0) * durations.sum::<f64>().powi(2);
         }
     }

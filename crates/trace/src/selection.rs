@@ -44,21 +44,21 @@ pub struct Selection {
     /// Excluded effects.
     pub excluded: Vec<EffectId>,
     /// `true` if effects that are not required are candidates.
-    pub search: bool,
+    pub searches_effects: bool,
     /// Effects given as formulas, candidates like the listed effects.
     pub formulas: Vec<Arc<Formula>>,
 }
 
 impl Default for Selection {
     fn default() -> Self {
-        Self { required: Vec::new(), excluded: Vec::new(), search: true, formulas: Vec::new() }
+        Self { required: Vec::new(), excluded: Vec::new(), searches_effects: true, formulas: Vec::new() }
     }
 }
 
 impl Selection {
     /// Selection of exactly these effects, without a search.
     pub fn only(with: Vec<EffectId>) -> Self {
-        Self { required: with, search: false, ..Self::default() }
+        Self { required: with, searches_effects: false, ..Self::default() }
     }
 
     /// Search among these listed effects only.
@@ -110,7 +110,7 @@ impl Selection {
 
     /// `true` if an effect is a candidate.
     pub fn allows(&self, id: &str) -> bool {
-        self.requires(id) || self.search && !self.excluded.iter().any(|excluded| excluded.as_str() == id)
+        self.requires(id) || self.searches_effects && !self.excluded.iter().any(|excluded| excluded.as_str() == id)
     }
 }
 
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| usual.allows(id)), [true, false, true]);
         let few = Selection::among(&[id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| few.allows(id)), [true, false, false]);
-        assert!(few.required.is_empty() && few.search && few.check().is_ok());
+        assert!(few.required.is_empty() && few.searches_effects && few.check().is_ok());
         let only = Selection::only(vec![id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| only.allows(id)), [true, false, false]);
         let both = Selection { excluded: vec![id("speed_loss")], ..usual };

@@ -25,7 +25,7 @@ pub fn record_label(trial: &Trial) -> String {
     }
 }
 
-/// Number with three significant digits.
+/// Value as text with three significant digits; three decimals below 1, none from 100.
 fn short(value: f64) -> String {
     let digits = match value.abs() {
         size if size >= 100.0 => 0,
@@ -36,7 +36,7 @@ fn short(value: f64) -> String {
     format!("{value:.digits$}")
 }
 
-/// Items joined by commas and "and".
+/// Enumeration of items, such as "a, b and c".
 fn listed(items: &[String]) -> String {
     match items {
         [] => String::new(),
@@ -156,14 +156,15 @@ impl Headline<'_> {
         )
     }
 
-    /// Random moment with its share of the error.
+    /// Statement on the random moment: its size, deg of rudder, and its share of the squared heading error; empty
+    /// without one.
     fn moment(&self) -> String {
         let Some(moment) = self.disturbance else { return String::new() };
         let (rudder, share) = (short(moment.rudder_deg), 100.0 * moment.heading_error_share);
         format!("a random yaw moment equal to {rudder}° of rudder (rms) explains {share:.0} %")
     }
 
-    /// Located shapes, with the first alternative.
+    /// Enumeration of the located shapes, dependence and form, with the first alternative of the clearest.
     fn shapes(&self) -> String {
         let shape = |located: &LocatedEntry| format!("{} ({})", located.depends_on, located.form);
         let shapes = listed(&self.located.iter().map(shape).collect::<Vec<_>>());
@@ -237,7 +238,7 @@ pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
 /// Clause on a band with less than its nominal coverage.
 pub fn band_sentence(name: &str, coverage: &BandCoverage) -> String {
     let [low, high] = coverage.interval.map(|end| 100.0 * end);
-    let (inside, total, share) = (coverage.inside, coverage.total, 100.0 * coverage.share());
+    let (inside, total, share) = (coverage.headings_inside, coverage.headings, 100.0 * coverage.share());
     format!("; the 95 % band holds {inside} of {total} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }
 

@@ -44,11 +44,11 @@ pub struct Settings {
     /// Required and excluded effects.
     pub selection: Selection,
     /// `true` if errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
-    pub thorough: bool,
+    pub is_thorough: bool,
     /// `true` if only heading, yaw rate and rudder are used, as in methods without other channels.
-    pub heading_alone: bool,
+    pub uses_heading_alone: bool,
     /// `true` if hull models of three degrees of freedom are fitted if the residual is more than noise.
-    pub hulls: bool,
+    pub fits_hulls: bool,
     /// Hulls from earlier trials of the ship or a similar one, used as priors.
     pub earlier: Vec<EarlierHull>,
 }
@@ -60,9 +60,9 @@ impl Default for Settings {
             rule: Rule::default(),
             monomials: 0,
             selection: Selection::default(),
-            thorough: true,
-            heading_alone: false,
-            hulls: false,
+            is_thorough: true,
+            uses_heading_alone: false,
+            fits_hulls: false,
             earlier: Vec::new(),
         }
     }

@@ -96,7 +96,7 @@ const MAX_PHYSICAL_RATIO_IF_DIVERGENT: f64 = 0.7;
 /// physics.
 const MAX_RANDOM_RATIO: f64 = 2.0;
 
-/// Weighs the structures of a full model under its noise law.
+/// Searches subsets of the terms of a full model and weighs them by their posterior under its noise law.
 fn weigh(
     problem: &FittedRecords,
     full: &FullModel,
@@ -198,7 +198,8 @@ impl StructureSearch<'_> {
         }
     }
 
-    /// Iterates the fits of the best structures to convergence.
+    /// Fits to convergence the first [`MAX_CONVERGED`] structures whose log posterior is within [`MAX_LOG_ODDS`] of the
+    /// highest.
     fn converge(&mut self) {
         let highest = self.top().map_or(0.0, |top| top.log_posterior);
         let mut best: Vec<&WeighedStructure> =
@@ -215,13 +216,13 @@ impl StructureSearch<'_> {
         self.store(fits);
     }
 
-    /// Flags of the terms of the full model that a fit has.
+    /// Flag of every term of the full model, `true` if a fit has it.
     fn terms_of(&self, fit: &StructureFit) -> Vec<bool> {
         let names = names(&fit.structure);
         self.full.fit.structure.terms.iter().map(|term| names.contains(&term.name())).collect()
     }
 
-    /// Log prior odds of a term; `required` for a required effect.
+    /// Log prior odds of a term, or `required` for a term of a required effect.
     fn odds(&self, term: &Term, required: f64) -> f64 {
         if self.selection.requires(term.effect.id()) { required } else { term.log_odds }
     }
@@ -274,7 +275,7 @@ impl StructureSearch<'_> {
         (structure.with_terms(terms), theta, initial)
     }
 
-    /// Log evidence plus log prior odds of a fit.
+    /// Log evidence plus log prior odds of a fit; [`Rule::Bic`] takes −BIC/2 for the evidence.
     fn log_posterior(&self, fit: &StructureFit) -> f64 {
         let odds: f64 = fit.structure.terms.iter().map(|term| self.odds(term, 0.0)).sum();
         odds + match self.rule {
@@ -286,7 +287,7 @@ impl StructureSearch<'_> {
         }
     }
 
-    /// Evaluated structure with the maximum posterior probability.
+    /// Evaluated structure with the highest log posterior.
     fn top(&self) -> Option<&WeighedStructure> {
         self.evaluated
             .values()
@@ -320,7 +321,7 @@ impl StructureSearch<'_> {
     /// Structures with their weights, the probabilities of the terms and their support.
     fn result(self) -> Structures {
         let terms = &self.full.fit.structure.terms;
-        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record)).collect();
+        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record_index)).collect();
         let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
         let support = terms.iter().map(|term| term.name()).zip(support).collect();
         let visibility = self.visibility;

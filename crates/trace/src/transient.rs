@@ -41,7 +41,7 @@ fn place(
     factor: &Cholesky<f64, Dyn>,
     explained: &DVector<f64>,
 ) -> Option<Vec<f64>> {
-    let number = term.record.unwrap_or(0);
+    let number = term.record_index.unwrap_or(0);
     let record = &problem.records[number];
     let block = linear.blocks[number].white(number, weights);
     let (a, b) = (fit.theta[0], fit.theta[1]);

@@ -71,7 +71,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::reader::read_from;
+    use crate::reader::read_from_reader;
     use crate::record::{Columns, Origin};
     use crate::{Conditions, DeclaredWeather, Sidecar};
 
@@ -112,8 +112,8 @@ mod tests {
             let trial = trial(without_heading);
             let mut bytes = Vec::new();
             write_csv(&trial, &mut bytes).expect("a vector takes all bytes");
-            let back =
-                read_from(Path::new("writer.csv"), &bytes[..], None, None).expect("a written record is readable");
+            let back = read_from_reader(Path::new("writer.csv"), &bytes[..], None, None)
+                .expect("a written record is readable");
             let back = back.trial;
             assert_eq!(back.len(), trial.len());
             assert_eq!(back.heading_from_yaw_rate(), without_heading);

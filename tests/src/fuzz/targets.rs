@@ -47,7 +47,7 @@ static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
 /// Target of a measured record, read by its header alone and passed to every method.
 pub fn record(data: &[u8]) -> bool {
     let name = Path::new("case.csv");
-    match reader::read_from(name, data, Some(data.len() as u64), None) {
+    match reader::read_from_reader(name, data, Some(data.len() as u64), None) {
         Ok(reading) => {
             is_a_reading(&reading);
             identified(&reading.trial);
@@ -58,7 +58,7 @@ pub fn record(data: &[u8]) -> bool {
 }
 
 fn read(name: &str, data: &[u8]) -> Result<ReadRecord, reader::ReadError> {
-    reader::read_from(Path::new(name), data, None, None)
+    reader::read_from_reader(Path::new(name), data, None, None)
 }
 
 /// Target of a log of sentences.
@@ -145,7 +145,7 @@ pub fn sidecar(data: &[u8]) -> bool {
         Ok(sidecar) => sidecar,
         Err(error) => return is_one_message(&error.to_string()),
     };
-    match reader::read_from(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
+    match reader::read_from_reader(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
         Ok(reading) => {
             is_a_reading(&reading);
             true

@@ -38,16 +38,19 @@ pub struct LeaderboardRow {
     /// Median of the score.
     pub median: ScoreFigure,
     /// 90 % quantile of the score.
-    pub high: ScoreFigure,
+    #[serde(rename = "high")]
+    pub quantile_90: ScoreFigure,
     /// Median ratio of the score to that of the reference in the same case; `null` for the reference itself, and if it
     /// takes no part.
     pub ratio: Option<ScoreFigure>,
     /// Share of cases in which the score is smaller than that of the reference; ties count half.
-    pub better: Option<ScoreFigure>,
+    #[serde(rename = "better")]
+    pub share_better: Option<ScoreFigure>,
     /// Mean rank among all methods.
     pub rank: f64,
     /// Coverage of the 95 % intervals of K and of T; `null` without intervals.
-    pub holds: Option<[WilsonShare; 2]>,
+    #[serde(rename = "holds")]
+    pub coverage: Option<[WilsonShare; 2]>,
 }
 
 /// A share with its 95 % interval (Wilson 1927).
@@ -121,7 +124,7 @@ fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[St
     let scores = Scores::from_cases(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {
-        let [median, high] = scores.figures(|cases| median_and_p90(cases.iter().map(|&case| values[case]).collect()));
+        let [median, quantile_90] = scores.figures(|cases| median_and_p90(cases.iter().map(|&k| values[k]).collect()));
         let paired = other.filter(|_| method != reference).map(|other| {
             scores.figures(|cases| {
                 let median = median_and_p90(cases.iter().map(|&case| ratio(values[case], other[case])).collect())[0];
@@ -137,24 +140,24 @@ fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[St
             method: method.clone(),
             failed: values.iter().filter(|score| score.is_infinite()).count(),
             median,
-            high,
+            quantile_90,
             ratio: paired.map(|[ratio, _]| ratio),
-            better: paired.map(|[_, better]| better),
+            share_better: paired.map(|[_, better]| better),
             rank: mean(scores.ranks.iter().map(|ranks| ranks[place])),
-            holds: holds(cases, method),
+            coverage: coverage(cases, method),
         }
     };
     let mut standings: Vec<LeaderboardRow> = scores.methods.iter().enumerate().map(row).collect();
-    standings.sort_by(|a, b| a.median.order(&b.median).then(a.high.order(&b.high)));
+    standings.sort_by(|a, b| a.median.order(&b.median).then(a.quantile_90.order(&b.quantile_90)));
     Board { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
 /// Coverage of the intervals of a method, for K and T.
-fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
+fn coverage(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
-    let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.holds).collect();
-    let coverage = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
-    Some([coverage(0)?, coverage(1)?])
+    let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.contains_truth).collect();
+    let share = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
+    Some([share(0)?, share(1)?])
 }
 
 /// Scores of one set, as one line of a table.
@@ -215,8 +218,8 @@ mod tests {
         let boards = boards(&cases, &methods, "a");
         let [Board { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
         let [b, a] = &standings[..] else { panic!("c was not asked: {standings:?}") };
-        assert_eq!((b.method.as_str(), b.failed, b.median.value, b.high.value), ("b", 4, Some(1.0), None));
-        assert_eq!((b.ratio.and_then(|ratio| ratio.value), b.better.and_then(|b| b.value)), (Some(0.5), Some(0.6)));
+        assert_eq!((b.method.as_str(), b.failed, b.median.value, b.quantile_90.value), ("b", 4, Some(1.0), None));
+        assert_eq!((b.ratio.and_then(|r| r.value), b.share_better.and_then(|b| b.value)), (Some(0.5), Some(0.6)));
         assert_eq!((a.median, a.ratio), (ScoreFigure { value: Some(2.0), ci95: Some([Some(2.0); 2]) }, None));
         assert_eq!((a.rank, b.rank), (1.6, 1.4));
         // Half of the resamples have five failures or more: the interval of the median has no upper end.

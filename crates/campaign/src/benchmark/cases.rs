@@ -100,8 +100,8 @@ pub struct CaseAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub errors_percent: Option<[f64; 2]>,
     /// `true` if the 95 % intervals contain K and T; `null` without intervals.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub holds: Option<[bool; 2]>,
+    #[serde(rename = "holds", skip_serializing_if = "Option::is_none")]
+    pub contains_truth: Option<[bool; 2]>,
     /// Correctness of the effects named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub naming: Option<Naming>,

@@ -179,7 +179,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     StudyCases { cases, sets: bench_sets(scenario, cells), skipped }
 }
 
-/// Records that are absent.
+/// Absent records of every set with the reason, each once.
 fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
     let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
     let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
@@ -193,7 +193,7 @@ fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
     distinct(sets.flat_map(of_set))
 }
 
-/// Sets of a study with their records.
+/// Sets of a study, the cells of one set joined: number of trials, and records, each once.
 fn bench_sets(scenario: &Scenario, cells: Vec<CellTasks>) -> Vec<BenchSet> {
     let mut sets: Vec<BenchSet> = Vec::new();
     for (place, cell) in cells.into_iter().enumerate() {
@@ -245,10 +245,10 @@ fn indices(row: &StudyRow) -> Option<CaseAnswer> {
     let [k, t, _] = row.errors();
     let errors = [k?, t?].map(|error| rounded(100.0 * error));
     let [true_k, true_t] = row.truth();
-    let holds = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
-    let holds = holds(row.k_ci95_per_s, true_k).zip(holds(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);
+    let contains = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
+    let contains_truth = contains(row.k_ci95_per_s, true_k).zip(contains(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);
     let score = Some(errors[0].abs().max(errors[1].abs()));
-    Some(CaseAnswer { score, errors_percent: Some(errors), holds, ..CaseAnswer::default() })
+    Some(CaseAnswer { score, errors_percent: Some(errors), contains_truth, ..CaseAnswer::default() })
 }
 
 #[cfg(test)]

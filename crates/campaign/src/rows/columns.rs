@@ -184,7 +184,7 @@ fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Resul
     parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))
 }
 
-/// Named effects.
+/// Column of the named effects: identifiers joined by `+`.
 fn named(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, |effect| effect.id.to_string()))
 }
@@ -194,7 +194,7 @@ fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Named effects, each with its aliases.
+/// Column of the named effects with their aliases: `effect|alias`, joined by `+`.
 fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
     let group = |effect: &NamedEffect| [std::slice::from_ref(&effect.id), effect.aliases.as_slice()].concat().join("|");
     Some(joined(&row.traced.as_ref()?.named, group))
@@ -215,7 +215,8 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Parameters of the named effects.
+/// Column of the parameters of the named effects: `symbol=value±sd`, joined by `|` in an effect and by `+` between
+/// them.
 fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
     let size = |EffectSize { symbol, value, sd }: &EffectSize| {
         format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))

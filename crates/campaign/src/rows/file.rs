@@ -87,7 +87,7 @@ impl From<String> for Damage {
     }
 }
 
-/// SHA-256 of columns.
+/// SHA-256 of the injective encodings of columns in their order, hexadecimal.
 fn values_hash(columns: &[Values]) -> String {
     let mut digest = Sha256::new();
     let mut bytes = Vec::new();

@@ -12,7 +12,7 @@ use crate::scenario::method::{IdentifierWire, Method, Procedure, methods};
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::physics::MissingPhysics;
 use crate::scenario::problem::{KeyFault, KeyPath};
-use crate::scenario::records::{RecordSet, RecordStudyWire};
+use crate::scenario::records::{RecordScenarioWire, RecordSet};
 use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
@@ -205,7 +205,7 @@ impl DrawnSettings {
         Ok(Some((drawn, specification)))
     }
 
-    /// Specification with sampled values.
+    /// Specification of a trial in which the drawn keys have these values, one per draw.
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
@@ -229,7 +229,7 @@ pub(crate) fn select_parts(document: &Table, parts: &[ScenarioPart]) -> Table {
     some
 }
 
-/// Settings of the points of a cell.
+/// Keys and values that the points of a cell set, in the order of the axes.
 fn settings<'a>(points: &'a [&sweep::SweepPoint]) -> impl DoubleEndedIterator<Item = &'a sweep::SweepSetting> {
     points.iter().flat_map(|point| &point.set)
 }
@@ -309,7 +309,7 @@ pub(crate) fn measured_cell(
         None => fault,
     };
     let changed = changed(document, points).map_err(attribute)?;
-    let wire: RecordStudyWire = reader::read_document(&changed).map_err(attribute)?;
+    let wire: RecordScenarioWire = reader::read_document(&changed).map_err(attribute)?;
     let set = RecordSet::read(&wire.records, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     Ok(DesignCell::new(points, methods, TrialSource::Measured(set)))

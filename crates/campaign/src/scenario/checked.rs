@@ -19,7 +19,7 @@ use crate::scenario::part::ScenarioPart;
 use crate::scenario::predictions::Predictions;
 use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::prose::{Presentation, Prose, Published};
-use crate::scenario::records::{self, RecordStudyWire};
+use crate::scenario::records::{self, RecordScenarioWire};
 use crate::scenario::stop::StopRule;
 use crate::scenario::sweep::{self, SweepAxis};
 use crate::scenario::wire::ScenarioWire;
@@ -55,7 +55,7 @@ pub struct Scenario {
     /// The file as it was read.
     pub text: String,
     /// SHA-256 of the file, hexadecimal.
-    pub sha256: String,
+    pub file_sha256: String,
     /// Keys of `[output]` in a manifest of another version, which are omitted.
     pub unknown_output: Vec<String>,
 }
@@ -100,7 +100,7 @@ impl Scenario {
         Self::from_table(path, name, text, &document, seed)
     }
 
-    /// Resolves the table of a text.
+    /// Resolves the table of a scenario; a fault is shown at its place in the text. `seed` replaces that of the file.
     fn from_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
         let scenario = Self::from_document(document, name, folder).map_err(|fault| {
@@ -113,7 +113,7 @@ impl Scenario {
             false => identity::study_sha256(&design, folder)?,
         };
         let seed = seed.unwrap_or(scenario.seed);
-        Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
+        Ok(Self { seed, design_sha256, file_sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
     /// Resolves a document; the caller sets identity and text.
@@ -165,8 +165,8 @@ impl Scenario {
 
     /// Resolves a document of measured records.
     fn from_records(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
-        let wire: RecordStudyWire = reader::read_document(document)?;
-        let RecordStudyWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
+        let wire: RecordScenarioWire = reader::read_document(document)?;
+        let RecordScenarioWire { question, analysis, finding, seed, predict, identifier, sweep, output, .. } = wire;
         let prose = Prose { question, analysis, finding, output };
         prose.check()?;
         let methods = methods(&identifier)?;
@@ -210,7 +210,7 @@ impl Scenario {
             predictions: None,
             design_sha256: String::new(),
             text: String::new(),
-            sha256: String::new(),
+            file_sha256: String::new(),
             unknown_output: Vec::new(),
         })
     }
@@ -248,7 +248,7 @@ impl Scenario {
     ///
     /// Fails for an invalid label, and for one already in use.
     pub fn with_outside_estimates(self, label: &str, answers: OutsideEstimates) -> Result<Self, Failure> {
-        let content = format!("answers {}", answers.sha256());
+        let content = format!("answers {}", answers.source_sha256());
         self.with(label, Procedure::OutsideEstimates(Arc::new(answers)), &content)
     }
 

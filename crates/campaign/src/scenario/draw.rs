@@ -132,7 +132,7 @@ impl DrawWire {
         Ok(draw)
     }
 
-    /// Distribution.
+    /// Distribution of the draw. Fails unless exactly one is given, with numbers in their ranges.
     fn shape(&self, place: &KeyPath) -> Result<DrawnDistribution, KeyFault> {
         let (name, numbers) = match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
             (Some(wire), None, None, None) => ("normal", [("mean", wire.mean), ("sd", wire.sd)]),
@@ -210,12 +210,12 @@ impl SampledKey {
         KeyFault { key, mark, problem, ..fault }
     }
 
-    /// Path of the draw in the file.
+    /// Path of the draw in the file: its index in the list `draw`.
     fn place(&self) -> KeyPath {
         KeyPath::from_dotted("draw").child(self.index)
     }
 
-    /// Probability of the range.
+    /// Probability of a value of the distribution within the range of the draw.
     fn probability(&self) -> f64 {
         let [below, above] = self.between.map(|end| self.shape.probability_below(end));
         above - below
@@ -247,7 +247,7 @@ impl DrawnDistribution {
         })
     }
 
-    /// Bounds of the distribution.
+    /// Least and largest value of the distribution: infinite for a normal one, 0 and infinite for a log-normal one.
     fn support(&self) -> [f64; 2] {
         match self.law {
             Distribution::Normal { .. } => [f64::NEG_INFINITY, f64::INFINITY].map(|end| self.to_value(end)),

@@ -56,7 +56,7 @@ struct SchemaWalk<'a> {
 }
 
 impl<'a> SchemaWalk<'a> {
-    /// Adds the keys of a table.
+    /// Adds the keys of a table and of the tables in it, with names that begin with `path`.
     fn below(&self, path: &str, table: &'a Value, keys: &mut Vec<ScenarioKey>) {
         let is_required =
             |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|key| key == name));

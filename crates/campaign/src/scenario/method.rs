@@ -57,7 +57,7 @@ impl Procedure {
     pub fn summary(&self) -> &str {
         match self {
             Self::Identify { identifier, .. } => identifier.summary(),
-            Self::Trace(settings) if settings.heading_alone => {
+            Self::Trace(settings) if settings.uses_heading_alone => {
                 "a trace of heading, yaw rate and rudder alone, the signals that all other methods read"
             }
             Self::Trace(_) => {
@@ -177,7 +177,7 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, KeyFault> 
     Ok(methods)
 }
 
-/// Procedure of one entry.
+/// Method, trace or null model of an entry. Fails unless exactly one is named, and for an invalid setting.
 fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, KeyFault> {
     match (&entry.method, &entry.trace, &entry.straight_on) {
         (Some(settings), None, None) => {
@@ -216,14 +216,14 @@ fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
 
 /// Settings of a trace, without restarted replays and proposals, which a study does not use.
 fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { rule, probability, ref menu, monomials, heading_alone, .. } = *wire;
+    let TraceWire { rule, probability, ref menu, monomials, heading_alone: uses_heading_alone, .. } = *wire;
     let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), selection_from)?;
     let selection = Selection { formulas, ..selection };
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
-    let usual = ::trace::Settings { thorough: false, ..::trace::Settings::default() };
-    let settings = ::trace::Settings { probability, rule, monomials, selection, heading_alone, ..usual };
+    let usual = ::trace::Settings { is_thorough: false, ..::trace::Settings::default() };
+    let settings = ::trace::Settings { probability, rule, monomials, selection, uses_heading_alone, ..usual };
     settings.check()?;
     Ok(settings)
 }
@@ -236,7 +236,7 @@ fn selection_from(menu: &[String]) -> Result<Selection, SettingsError> {
     Ok(Selection::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
 }
 
-/// Key of a method in a scenario.
+/// Identifier of a method: the key of its settings in a scenario.
 fn registry_id(settings: &IdentifierSettings) -> String {
     let table = toml::Table::try_from(settings).unwrap_or_default();
     table.keys().next().cloned().unwrap_or_default()
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn a_trace_has_a_rule_and_a_menu() {
         let usual = traced("").expect("the usual");
-        assert_eq!(usual, ::trace::Settings { thorough: false, ..::trace::Settings::default() });
+        assert_eq!(usual, ::trace::Settings { is_thorough: false, ..::trace::Settings::default() });
         let keys = "rule = \"bic\", menu = [\"wind_moment\"], monomials = 59, probability = 0.9";
         let other = traced(keys).expect("settings in range");
         assert_eq!((other.rule, other.monomials, other.probability), (Rule::Bic, 59, 0.9));

@@ -14,26 +14,26 @@ pub const METHOD_ID: &str = "external";
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutsideEstimates {
     answers: HashMap<TrialNumber, Result<OutsideFit, String>>,
-    sha256: String,
+    source_sha256: String,
 }
 
 impl OutsideEstimates {
     /// Outside estimates, or reasons for missing estimates, with the SHA-256 of their source, which identifies them.
-    pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, sha256: String) -> Self {
-        Self { answers, sha256 }
+    pub fn new(answers: HashMap<TrialNumber, Result<OutsideFit, String>>, source_sha256: String) -> Self {
+        Self { answers, source_sha256 }
     }
 
     /// SHA-256 of their source.
-    pub fn sha256(&self) -> &str {
-        &self.sha256
+    pub fn source_sha256(&self) -> &str {
+        &self.source_sha256
     }
 
     /// Estimate for a trial. Fails with the reason of a missing estimate.
     pub fn estimate(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
-            Some(Err(reason)) => Err(IdentifyError::outside(reason)),
-            None => Err(IdentifyError::outside("no answer")),
+            Some(Err(reason)) => Err(IdentifyError::external_estimator(reason)),
+            None => Err(IdentifyError::external_estimator("no answer")),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::scenario::problem::{KeyFault, KeyPath};
 pub(crate) struct PredictWire {
     /// Manoeuvres, as in `study predict --manoeuvre`.
     pub manoeuvres: Vec<String>,
-    /// Number of ships sampled for every prediction.
+    /// Number of ships drawn for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }
@@ -37,19 +37,19 @@ pub struct Predictions {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct RecordPredictWire {
-    /// Number of ships sampled for every prediction.
+    /// Number of ships drawn for every prediction.
     #[serde(default = "draws")]
     pub draws: u64,
 }
 
 impl RecordPredictWire {
-    /// Checks the number of draws.
+    /// Predictions of the validation records, which give the manoeuvres. Fails for a number of draws outside [`DRAWS`].
     pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         Ok(Predictions { manoeuvres: Vec::new(), draws: checked(self.draws)? })
     }
 }
 
-/// Checked number of draws.
+/// The number of draws; fails outside [`DRAWS`].
 fn checked(draws: u64) -> Result<usize, KeyFault> {
     let key = KeyPath::from_dotted("predict.draws");
     let fault = || KeyFault::new(key, draws, "expected 50 to 10000", "200 draws are enough for a 90 % interval");

@@ -74,7 +74,7 @@ pub struct Highlight {
 
 impl Highlight {
     /// Labels of all highlighted methods, those of the scenario first.
-    pub fn methods(&self) -> Vec<String> {
+    pub fn method_labels(&self) -> Vec<String> {
         [&self.series[..], &self.scored].concat()
     }
 }

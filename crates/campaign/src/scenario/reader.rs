@@ -240,7 +240,7 @@ const A_TABLE: &str = "a table: `[name]`, or `{ key = value }`";
 const A_LIST: &str = "a list: `[…]`, or tables under `[[name]]`";
 const SETTINGS: &str = "a name with its settings";
 
-/// Expectation of serde in terms of TOML.
+/// What serde expected, by its name in TOML.
 fn in_toml(expected: &str) -> &str {
     match expected {
         "f64" => "a number",

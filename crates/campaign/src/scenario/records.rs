@@ -33,7 +33,8 @@ const MAX_RECORDS: usize = 1000;
 /// Scenario of measured records.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct RecordStudyWire {
+#[schemars(rename = "RecordStudyWire")]
+pub struct RecordScenarioWire {
     /// Question of the study, in one sentence.
     pub question: String,
     /// Interpretation of the results, in paragraphs.

@@ -18,7 +18,7 @@ use crate::scenario::{effect, ship};
 pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
-        scenario: name.to_owned(),
+        scenario_name: name.to_owned(),
         gear: wire.steering_gear.with_ship_defaults(&ship),
         helmsman: wire.helmsman,
         approach: wire.approach,

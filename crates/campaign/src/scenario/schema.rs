@@ -4,7 +4,7 @@
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
 
-use crate::scenario::records::RecordStudyWire;
+use crate::scenario::records::RecordScenarioWire;
 use crate::scenario::wire::ScenarioWire;
 
 /// Scenario of simulated ships or of measured records.
@@ -13,7 +13,7 @@ use crate::scenario::wire::ScenarioWire;
 #[expect(dead_code, reason = "it is described and never made")]
 enum AnyScenario {
     Simulated(Box<ScenarioWire>),
-    Measured(Box<RecordStudyWire>),
+    Measured(Box<RecordScenarioWire>),
 }
 
 /// JSON schema of a scenario, in draft 7, which TOML editors support.

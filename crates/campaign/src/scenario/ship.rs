@@ -96,7 +96,7 @@ pub fn build(named: &NamedNumbers) -> Result<Ship, KeyFault> {
     }
 }
 
-/// MMG hull from its particulars.
+/// Hull with MMG coefficients estimated from its particulars; fails with the key of an invalid particular.
 fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault> {
     let mut particulars = HullParticulars::default();
     for (name, value) in numbers {

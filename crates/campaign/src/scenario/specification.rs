@@ -30,7 +30,8 @@ pub const HULL: &str = "hull";
 impl Specification {
     /// Simulation of every record of a trial, each with its random key.
     pub fn records(&self, key: &StreamKey) -> impl Iterator<Item = (&Simulation, StreamKey)> {
-        /// Odd, so that no two of 2⁶⁴ records share a seed.
+        /// Seed increment from one record of a trial to the next: 2⁶⁴ over the golden ratio (SplitMix64; Steele, Lea
+        /// and Flood 2014). It is odd, so no two of 2⁶⁴ records share a seed.
         const NEXT: u64 = 0x9E37_79B9_7F4A_7C15;
         let key = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
         std::iter::once(&self.simulation).chain(&self.further).enumerate().map(move |(number, run)| (run, key(number)))

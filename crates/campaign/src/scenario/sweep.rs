@@ -26,7 +26,7 @@ pub struct AxisWire {
     name: Option<String>,
     /// Dotted key that is swept, with `values`, `linear` or `log`.
     key: Option<String>,
-    /// List of values.
+    /// Values of the swept key; in place of `linear` or `log`.
     #[schemars(with = "Option<Vec<serde_json::Value>>")]
     values: Option<Vec<Value>>,
     /// Range of evenly spaced values.

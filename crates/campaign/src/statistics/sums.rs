@@ -27,7 +27,7 @@ impl Sum for BatchSums {
     }
 }
 
-/// Batch of a replicate.
+/// Sums of the batch of a replicate, which is its number modulo [`BATCH_COUNT`]; missing batches are added.
 fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     let place = (replicate % BATCH_COUNT as u64) as usize;
     if batches.len() <= place {

@@ -77,7 +77,7 @@ impl Judgement {
         }
     }
 
-    /// Judgement if listed effects are correct.
+    /// Judgement on a ship that lacks listed effects, by the effects named; `right` are those that it lacks.
     fn from_names(answer: &TraceRow, right: &[String]) -> Self {
         let is_right = |id: &str| right.iter().any(|effect| effect == id);
         let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.includes(id));

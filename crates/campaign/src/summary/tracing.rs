@@ -141,7 +141,7 @@ pub(super) struct TraceTally {
 struct RunningMean(f64, u64);
 
 impl RunningMean {
-    /// Adds a value and returns the mean.
+    /// Adds a value, if there is one, and returns the mean of all values so far.
     fn add(&mut self, value: Option<f64>) -> Option<f64> {
         *self = Self(self.0 + value.unwrap_or(0.0), self.1 + u64::from(value.is_some()));
         (self.1 > 0).then(|| self.0 / self.1 as f64)

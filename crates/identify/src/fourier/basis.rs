@@ -61,12 +61,12 @@ impl OrthogonalPart {
         Self { places, qr }
     }
 
-    /// Columns of a series of `harmonics` harmonics.
+    /// Columns of this part in a series of `harmonics` harmonics: those with a number up to 2 `harmonics`.
     fn places(&self, harmonics: usize) -> &[usize] {
         &self.places[..self.places.partition_point(|&place| place <= 2 * harmonics)]
     }
 
-    /// Qᵀy for the part of a signal.
+    /// Qᵀy of the part y of a signal; the squares of its rows from m on add up to the RSS of m columns.
     fn rotated(&self, mut signal: DVector<f64>) -> DVector<f64> {
         self.qr.q_tr_mul(&mut signal);
         signal
@@ -152,7 +152,7 @@ impl NestedBases {
         vec![even, odd]
     }
 
-    /// Inverse of [`Self::split`].
+    /// Signal at the instants from its even and odd halves: the inverse of [`Self::split`].
     fn join(&self, parts: &[DVector<f64>]) -> Vec<f64> {
         let [even, odd] = parts else { return parts[0].as_slice().to_vec() };
         let half = even.len();

@@ -26,7 +26,7 @@ pub struct FoldedRows {
     /// `true` if every row has its mirror image, so that `skew` is zero.
     pub is_symmetric: bool,
     /// Number of instants without the padding.
-    pub used: usize,
+    pub used_rows: usize,
 }
 
 impl FoldedRows {
@@ -61,8 +61,8 @@ impl FoldedRows {
     }
 
     fn pad(&mut self) {
-        self.used = self.time.len();
-        let padded = self.used.next_multiple_of(LANES);
+        self.used_rows = self.time.len();
+        let padded = self.used_rows.next_multiple_of(LANES);
         for column in [&mut self.time, &mut self.even, &mut self.odd, &mut self.weight, &mut self.skew] {
             column.resize(padded, 0.0);
         }

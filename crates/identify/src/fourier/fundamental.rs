@@ -85,7 +85,7 @@ impl Fundamental {
     }
 }
 
-/// Lowest RSS of local searches from every start (rad/s).
+/// Fundamental of lowest RSS among the local minima downhill from every start, rad/s.
 fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let duration = time[time.len() - 1] - time[0];
     let mut profile = Profile::new(time, heading, harmonics);
@@ -175,7 +175,7 @@ fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) ->
     (x, fx)
 }
 
-/// Lowest RSS on a grid of fundamentals, refined.
+/// Fundamental of lowest RSS on a grid, refined between its neighbours; stopped by the range at an end of the grid.
 fn lowest(time: &[f64], heading: &[f64], harmonics: usize) -> ChosenFundamental {
     let duration = time[time.len() - 1] - time[0];
     let peak = spectral_peak(time, heading);

@@ -93,7 +93,7 @@ impl Profile {
         FrequencySweep { profile: self, turn, from, step, done: 0 }
     }
 
-    /// Sets the phasors of `fundamental`.
+    /// Sets the phasor of every row, (cos, sin) of ½wu, for w = `fundamental`.
     fn anchor(&mut self, fundamental: f64) {
         for (value, u) in self.phasor.iter_mut().zip(&self.rows.time) {
             *value = phasor(0.5 * fundamental * u);
@@ -139,12 +139,12 @@ impl Profile {
 
     /// RSS from an orthogonal decomposition, for columns that are nearly dependent on the given rows.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
-        let FoldedRows { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
+        let FoldedRows { time, even, odd, weight, skew, is_symmetric, used_rows } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.duration));
-        let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
+        let (mut cosines, mut sines) = (DMatrix::zeros(*used_rows, n + 1), DMatrix::zeros(*used_rows, n));
         // A pair of instants has the weight √2; a single instant has the sign of its side in `skew`.
-        let root: Vec<f64> = weight[..*used].iter().map(|weight| weight.sqrt()).collect();
-        for row in 0..*used {
+        let root: Vec<f64> = weight[..*used_rows].iter().map(|weight| weight.sqrt()).collect();
+        for row in 0..*used_rows {
             let [xi, sine] = arguments(phasor(0.5 * fundamental * time[row]), share);
             let (mut before, mut here) = (xi, 1.0);
             for k in 0..=n {
@@ -155,7 +155,7 @@ impl Profile {
                 (before, here) = (here, 2.0 * xi * here - before);
             }
         }
-        let part = |signal: &[f64]| DVector::from_fn(*used, |row, _| signal[row] / root[row]);
+        let part = |signal: &[f64]| DVector::from_fn(*used_rows, |row, _| signal[row] / root[row]);
         if *is_symmetric {
             // The cosines act only on the even part of the record, the sines only on the odd part.
             return residual_sum_of_squares(cosines, part(even)) + residual_sum_of_squares(sines, part(odd));
@@ -203,13 +203,13 @@ fn cosine_share(fundamental: f64, duration: f64) -> f64 {
     (0.25 * fundamental * duration).min(FRAC_PI_2).sin().powi(2)
 }
 
-/// cos and sin of an angle.
+/// (cos, sin) of an angle, rad.
 fn phasor(angle: f64) -> [f64; 2] {
     let (s, c) = angle.sin_cos();
     [c, s]
 }
 
-/// ξ and sin w u from cos and sin of ½wu.
+/// ξ, which is cos w u stretched from its `share` to [−1, 1], and sin w u, from (cos, sin) of ½wu.
 fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }

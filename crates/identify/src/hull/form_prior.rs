@@ -114,7 +114,7 @@ impl HullFormPrior {
     }
 }
 
-/// Λ₀.
+/// Prior precision Λ₀ of the coefficients of a form: the inverse of their covariance.
 fn precision_of(form: &HullForm) -> DMatrix<f64> {
     Cholesky::new(form.covariance().clone()).expect("a covariance").inverse()
 }

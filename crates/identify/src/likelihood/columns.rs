@@ -38,7 +38,7 @@ impl MotionColumns {
         self.rates.all_mut().into_iter().for_each(|column| keep(rates, column));
     }
 
-    /// Columns of the heading and of the yaw rate.
+    /// Columns of φ₁, G and H: of the heading, and of the yaw rate.
     pub(super) fn slices(&mut self) -> ([&mut [f64]; 3], [&mut [f64]; 3]) {
         let Self { homogeneous, rudder, constant, rates } = self;
         ([homogeneous, rudder, constant].map(Vec::as_mut_slice), rates.all_mut().map(Vec::as_mut_slice))

@@ -15,9 +15,9 @@ pub struct NoiseVector {
     /// Kind of yaw moment.
     pub moment: MomentKind,
     /// `true` if the rudder has an error.
-    pub rudder: bool,
+    pub has_rudder_error: bool,
     /// `true` if the compass error has a correlation time.
-    pub coloured: bool,
+    pub has_coloured_compass: bool,
     /// Logarithms, in the order above; inactive entries are ignored.
     pub log: [f64; NOISE_ENTRIES],
 }
@@ -44,8 +44,8 @@ impl NoiseVector {
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
         Self {
             moment: if noise.moment_level > 0.0 { noise.moment } else { MomentKind::None },
-            rudder: noise.rudder_sd > 0.0,
-            coloured: noise.heading_correlation.is_some(),
+            has_rudder_error: noise.rudder_sd > 0.0,
+            has_coloured_compass: noise.heading_correlation.is_some(),
             log: [
                 log(noise.moment_level / unit),
                 log(noise.moment_correlation),
@@ -62,7 +62,7 @@ impl NoiseVector {
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
             heading_sd,
-            heading_correlation: self.coloured.then(|| self.log[COMPASS_INDEX].exp()),
+            heading_correlation: self.has_coloured_compass.then(|| self.log[COMPASS_INDEX].exp()),
             yaw_rate_sd: gyro.then(|| size(GYRO_INDEX)),
             moment: self.moment,
             moment_level: if has_moment { size(LEVEL_INDEX) } else { 0.0 },
@@ -71,7 +71,7 @@ impl NoiseVector {
                 MomentKind::White => 0.0,
                 MomentKind::None | MomentKind::Walk => f64::INFINITY,
             },
-            rudder_sd: if self.rudder { size(RUDDER_INDEX) / gain.abs() } else { 0.0 },
+            rudder_sd: if self.has_rudder_error { size(RUDDER_INDEX) / gain.abs() } else { 0.0 },
         }
     }
 
@@ -80,8 +80,8 @@ impl NoiseVector {
         let active = [
             self.moment != MomentKind::None,
             self.moment == MomentKind::OrnsteinUhlenbeck,
-            self.rudder,
-            self.coloured,
+            self.has_rudder_error,
+            self.has_coloured_compass,
             gyro,
         ];
         (0..NOISE_ENTRIES).filter(move |&entry| active[entry])
@@ -95,8 +95,8 @@ impl NoiseVector {
             moment: self.moment,
             level: size(LEVEL_INDEX),
             rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION_INDEX]).exp() } else { 0.0 },
-            rudder: self.rudder.then(|| size(RUDDER_INDEX)),
-            compass_rate: self.coloured.then(|| (-self.log[COMPASS_INDEX]).exp()),
+            rudder: self.has_rudder_error.then(|| size(RUDDER_INDEX)),
+            compass_rate: self.has_coloured_compass.then(|| (-self.log[COMPASS_INDEX]).exp()),
             gyro: size(GYRO_INDEX),
         }
     }

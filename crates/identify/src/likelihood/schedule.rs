@@ -70,7 +70,7 @@ impl Schedule {
         schedule
     }
 
-    /// Index of a kind of step, which is stored if it is new.
+    /// Index of the step over these pieces, s, stored if none of the last [`MAX_RECENT_KINDS`] steps has them.
     fn kind(&mut self, pieces: &[f64]) -> usize {
         let recent = self.spans.len().saturating_sub(MAX_RECENT_KINDS);
         if let Some(place) = self.spans[recent..].iter().rposition(|span| span.has_pieces(pieces)) {

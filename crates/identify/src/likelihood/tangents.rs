@@ -40,11 +40,12 @@ impl Kernel for MotionsWithTangents<'_> {
         let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
         let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for TrackStep { from, to, duration, rudder_rate: slope, bend } in track.steps(is_backward(inverse_time)) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: slope, bend } in track.steps(is_backward(inverse_time))
+        {
             if durations_differ(step.value.h, duration) {
                 step = TangentTransition::new(inverse_time, duration);
             }
-            let (f0, d, delta) = (&step.value, &step.by_inverse_T, track.rudder[from]);
+            let (f0, d, delta) = (&step.value, &step.by_inverse_T, track.rudder[from_row]);
             let forced = |[one, two]: [f64; 2]| [0.0, one * delta + two * slope, one, 0.0];
             let (of_heading, of_rate) = (forced([f0.phi2, f0.phi3]), forced([f0.phi1, f0.phi2]));
             let (of_by_heading, of_by_rate) = (forced([d.phi2, d.phi3]), forced([d.phi1, d.phi2]));
@@ -61,11 +62,11 @@ impl Kernel for MotionsWithTangents<'_> {
                 by_heading[1] += by_inverse_T.phi3 * change;
                 by_rate[1] += by_inverse_T.phi2 * change;
             }
-            [f[to], g[to], h[to], _] = heading;
-            [df[to], dg[to], dh[to], _] = by_heading;
+            [f[to_row], g[to_row], h[to_row], _] = heading;
+            [df[to_row], dg[to_row], dh[to_row], _] = by_heading;
             if has_rates {
-                [fr[to], gr[to], hr[to], _] = rate;
-                [dfr[to], dgr[to], dhr[to], _] = by_rate;
+                [fr[to_row], gr[to_row], hr[to_row], _] = rate;
+                [dfr[to_row], dgr[to_row], dhr[to_row], _] = by_rate;
             }
         }
     }

@@ -197,8 +197,8 @@ fn even_rows_settle() {
     let trial = record("even", time, heading, rudder);
     let track = Track::new(&trial);
     let schedule = Schedule::new(&track, false);
-    let place =
-        NoiseVector { moment: MomentKind::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
+    let log = [-3.0, 0.0, 0.0, 0.0, 0.0];
+    let place = NoiseVector { moment: MomentKind::Walk, log, ..NoiseVector::default() };
     let parameters = place.parameters(0.06);
     let filter = whitener(&schedule, &parameters, [0.0; 2]);
     assert_eq!(schedule.spans.len(), 1);

@@ -61,9 +61,9 @@ struct CornerAfterRow {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackStep {
     /// Row before the step.
-    pub from: usize,
+    pub from_row: usize,
     /// Row after the step.
-    pub to: usize,
+    pub to_row: usize,
     /// Signed duration, s.
     pub duration: f64,
     /// Rudder rate at the beginning of the step, rad/s.
@@ -210,11 +210,11 @@ impl Track {
             if backward {
                 let bend = corner.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
                 let rudder_rate = corner.map_or(rudder_rate, |corner| corner.rudder_rate);
-                TrackStep { from: row + 1, to: row, duration: -duration, rudder_rate, bend }
+                TrackStep { from_row: row + 1, to_row: row, duration: -duration, rudder_rate, bend }
             } else {
                 let bend =
                     corner.map(|c| RudderCorner { remaining: duration - c.after, change: c.rudder_rate - rudder_rate });
-                TrackStep { from: row, to: row + 1, duration, rudder_rate, bend }
+                TrackStep { from_row: row, to_row: row + 1, duration, rudder_rate, bend }
             }
         })
     }
@@ -266,11 +266,11 @@ impl Track {
     fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
-        for TrackStep { from, to, duration, rudder_rate: rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
             if durations_differ(step.h, duration) {
                 step = Transition::new(inverse_time, duration);
             }
-            let delta = self.rudder[from];
+            let delta = self.rudder[from_row];
             let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
             let of_rate = [0.0, step.phi1 * delta + step.phi2 * rate, step.phi1, 0.0];
             for motion in 0..4 {
@@ -282,7 +282,7 @@ impl Track {
                 heading[1] += more_heading;
                 yaw_rate[1] += more_rate;
             }
-            visit(to, heading, yaw_rate);
+            visit(to_row, heading, yaw_rate);
         }
     }
 
@@ -303,12 +303,12 @@ impl Track {
         // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for TrackStep { from, to, duration, rudder_rate: rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
             if durations_differ(step.value.h, duration) {
                 step = TangentTransition::new(inverse_time, duration);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
-            let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
+            let u0 = coefficients.gain * self.rudder[from_row] + coefficients.offset;
             let slope = coefficients.gain * rate;
             let r = yaw_rate[1];
             let of_heading = [d.phi1 * r + (d.phi2 * u0 + d.phi3 * slope), f.phi2 * u0 + f.phi3 * slope];
@@ -327,7 +327,7 @@ impl Track {
                     yaw_rate[motion] += part * change;
                 }
             }
-            visit(to, heading[0]);
+            visit(to_row, heading[0]);
         }
     }
 
@@ -355,18 +355,18 @@ impl Track {
         let mut state = coefficients.anchor;
         visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_time, 0.0);
-        for TrackStep { from, to, duration, rudder_rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate, bend } in self.steps(backward) {
             if durations_differ(step.h, duration) {
                 step = Transition::new(inverse_time, duration);
             }
-            let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
+            let u0 = coefficients.gain * self.rudder[from_row] + coefficients.offset;
             state = step.advance(state, u0, coefficients.gain * rudder_rate);
             if let Some(bend) = bend {
                 let [heading, yaw_rate] = bend.response(inverse_time);
                 state.heading += coefficients.gain * heading;
                 state.yaw_rate += coefficients.gain * yaw_rate;
             }
-            visit(to, state);
+            visit(to_row, state);
         }
     }
 }

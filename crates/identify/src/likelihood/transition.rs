@@ -28,7 +28,8 @@ const NODES: [(f64, f64); 8] = [
 
 type Small = [[f64; 3]; 3];
 
-/// Step over the time between two readings.
+/// Transition and process noise between two readings: the pieces of the rudder in order, and the decay of the compass
+/// error over the whole time.
 pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
     let mut whole = match parameters.rudder {
         None => undisturbed(parameters, span.duration()),
@@ -47,7 +48,7 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
     whole
 }
 
-/// Step of ship and moment, without rudder error.
+/// Step of ship and moment without rudder error: a short step F, Q, doubled by F F and Q + F Q Fᵀ up to `duration`, s.
 fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> Step<N> {
     let rates = parameters.inverse_time.abs() + parameters.rate;
     let doublings = (rates * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);

@@ -88,7 +88,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
         let information = maximum.derivatives.information.view((first, first), (count, count)).into_owned();
         let ridge = DMatrix::from_fn(count, count, |i, j| if i == j { 1e-9 * information[(i, i)] + 1e-9 } else { 0.0 });
         let factor = (information + ridge).cholesky();
-        let is_tied = vector.rudder && record.declared.is_some();
+        let is_tied = vector.has_rudder_error && record.declared.is_some();
         for (variance, direction) in variance.iter_mut().zip(&directions) {
             let seen = inverse * direction;
             let size = direction.dot(&seen);
@@ -124,7 +124,7 @@ fn averaged_covariance(chosen: &ChosenLaw, freedom: f64) -> (Matrix3<f64>, f64) 
 
 /// Estimate under the selected noise law.
 pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, IdentifyError> {
-    let ChosenLaw { records, maxima, at_bound, .. } = &chosen;
+    let ChosenLaw { records, maxima, is_at_bound, .. } = &chosen;
     let maximum = &maxima[0].1;
     let Point { inverse_time, gain, offset, deviance, ref vectors, ref parts, .. } = maximum.point;
     let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
@@ -149,7 +149,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let mut warnings = Vec::from_iter(warning);
     warnings.extend(response.is_course_unstable().then(|| WarningCode::CourseUnstable.warning(UNSTABLE_WARNING)));
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
-    warnings.extend(at_bound.then(|| WarningCode::AtBound.warning(beyond())));
+    warnings.extend(is_at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))
         .map(|(record, (vector, part))| vector.to_model(gain, part.variance.sqrt(), record.has_gyro()))
         .collect();
@@ -166,7 +166,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
         response,
         uncertainty,
         robust: Some(robust_covariance),
-        stop: match (at_bound, maximum.converged) {
+        stop: match (is_at_bound, maximum.has_converged) {
             (true, _) => StopReason::RangeLimit,
             (false, true) => StopReason::Converged,
             (false, false) => StopReason::IterationLimit,
@@ -198,7 +198,7 @@ fn outlier_warnings(trials: &[Trial], chosen: &ChosenLaw) -> Vec<Warning> {
             warnings.push(WarningCode::HeadingJump.warning(text));
         }
     }
-    if chosen.too_many {
+    if chosen.has_too_many_outliers {
         let text = "more than a tenth of the headings are far from their neighbours: none left out; check the compass";
         warnings.push(WarningCode::OddHeadings.warning(text));
     }

@@ -42,7 +42,7 @@ pub(super) struct PreparedRecords {
     records: Vec<Record>,
     start: FirstOrder,
     pub outliers: Vec<Suspects>,
-    too_many: bool,
+    has_too_many_outliers: bool,
     evaluations: usize,
 }
 
@@ -54,12 +54,12 @@ pub(super) struct ChosenLaw {
     /// Spikes and jumps of every record, by row of the track.
     pub outliers: Vec<Suspects>,
     /// `true` if there are too many spikes to leave out.
-    pub too_many: bool,
+    pub has_too_many_outliers: bool,
     /// BIC of every kind of moment that was fitted.
     pub tried: Vec<(MomentKind, f64)>,
     pub evaluations: usize,
     /// `true` if 1/T is at the edge of the range of `output-error`.
-    pub at_bound: bool,
+    pub is_at_bound: bool,
 }
 
 impl PreparedRecords {
@@ -71,17 +71,17 @@ impl PreparedRecords {
         let method = output_error::Settings::default().build().expect("default settings are valid");
         // Readings far from any possible course would spoil the first fit: a very quick ship could follow a sentinel in
         // the first row by its initial yaw rate.
-        let gross = |track: &Track| match settings.outliers {
+        let gross = |track: &Track| match settings.removes_outliers {
             true => Suspects { jumps: Vec::new(), ..outliers::find_suspects(track, &track.heading, &[]) },
             false => Suspects::default(),
         };
         let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
-        let mut too_many = false;
+        let mut has_too_many_outliers = false;
         let mut tracks: Vec<Track> =
             whole.iter().zip(&suspects).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
         let mut first = method.fit(tracks.clone(), finest);
         let mut evaluations = 0;
-        for _ in 0..if settings.outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
+        for _ in 0..if settings.removes_outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
             let fitted = first.as_ref().ok();
             let again = |(track, excluded): (&Track, &Suspects)| {
@@ -89,8 +89,8 @@ impl PreparedRecords {
             };
             let next: Vec<Suspects> = whole.iter().zip(&suspects).map(again).collect();
             let share = |(track, rows): (&Track, &Suspects)| rows.spikes.len() as f64 / track.len() as f64;
-            too_many = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > MAX_OUTLIER_SHARE;
-            if too_many || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
+            has_too_many_outliers = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > MAX_OUTLIER_SHARE;
+            if has_too_many_outliers || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
                 suspects = next;
                 break;
             }
@@ -98,13 +98,13 @@ impl PreparedRecords {
             suspects = next;
             first = method.fit(tracks.clone(), finest);
         }
-        if too_many {
+        if has_too_many_outliers {
             suspects.iter_mut().for_each(|rows| rows.spikes.clear());
             tracks = whole.clone();
             first = method.fit(tracks.clone(), finest);
         }
         let first = first?;
-        let gyro = settings.yaw_rate
+        let gyro = settings.uses_yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
         let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
         let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
@@ -117,28 +117,27 @@ impl PreparedRecords {
                 Record::new(track, by_row, declared_sd(trial).filter(|_| declared))
             })
             .collect();
-        Ok(Self { records, start: first.response, outliers: suspects, too_many, evaluations })
+        Ok(Self { records, start: first.response, outliers: suspects, has_too_many_outliers, evaluations })
     }
 
     /// Times of the spikes of every record, s.
     pub fn spikes(&self) -> Vec<Vec<f64>> {
         let times = |(record, suspects): (&Record, &Suspects)| {
-            let time = &record.track.time;
-            suspects.spikes.iter().map(|&row| time[row]).collect()
+            suspects.spikes.iter().map(|&row| record.track.time[row]).collect()
         };
         self.records.iter().zip(&self.outliers).map(times).collect()
     }
 
     /// Fits every noise law and selects the law with the lowest BIC.
     pub fn choose(self, settings: &Settings) -> Result<ChosenLaw, IdentifyError> {
-        let Self { mut records, start, outliers, too_many, evaluations } = self;
+        let Self { mut records, start, outliers, has_too_many_outliers, evaluations } = self;
         let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
         let a = start.inverse_T;
         let estimated = settings.rudder == RudderChoice::Estimated;
         let blank = |(record, ranges): (&Record, &Ranges)| {
             gyro_start(
                 ranges,
-                &NoiseVector { rudder: estimated || record.declared.is_some(), ..NoiseVector::default() },
+                &NoiseVector { has_rudder_error: estimated || record.declared.is_some(), ..NoiseVector::default() },
             )
         };
         let none: Vec<NoiseVector> = records.iter().zip(&ranges).map(blank).collect();
@@ -162,8 +161,8 @@ impl PreparedRecords {
         let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
         let maxima: Vec<(f64, Maximum)> = all.into_iter().map(weigh).filter(|(share, _)| *share > MIN_WEIGHT).collect();
         let end = maxima[0].1.point.inverse_time;
-        let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
-        Ok(ChosenLaw { records, maxima, outliers: kept, too_many, tried, evaluations: spent, at_bound })
+        let is_at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
+        Ok(ChosenLaw { records, maxima, outliers: kept, has_too_many_outliers, tried, evaluations: spent, is_at_bound })
     }
 }
 
@@ -201,7 +200,8 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     Ranges { duration: track.duration(), spacing, residual }
 }
 
-/// BIC of a point.
+/// BIC: restricted −2 log L plus log n per active entry of the noise, with n readings over all records; a declared
+/// rudder error does not count.
 fn bic(records: &[Record], point: &Point) -> f64 {
     let noise: usize = records
         .iter()
@@ -242,7 +242,7 @@ fn fit_laws(
     }
     // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already
     // optimal.
-    let is_coloured = |vector: &NoiseVector| vector.moment != MomentKind::None || vector.coloured || vector.rudder;
+    let is_coloured = |v: &NoiseVector| v.moment != MomentKind::None || v.has_coloured_compass || v.has_rudder_error;
     if let Some((_, best)) = lowest(&all).filter(|(_, best)| best.point.vectors.iter().any(is_coloured)) {
         let elsewhere = best_inverse_time(&mut search, best.point.inverse_time, &best.point.vectors);
         if elsewhere.as_ref().is_some_and(|point| point.deviance < best.point.deviance) {
@@ -256,14 +256,15 @@ fn fit_laws(
 }
 
 impl Search<'_> {
-    /// Maximum likelihood from a start, with its BIC.
+    /// Maximum of the likelihood uphill from a start, preceded by its BIC.
     fn highest(&mut self, start: Point) -> Option<(f64, Maximum)> {
         let maximum = self.maximise(start)?;
         Some((bic(self.records, &maximum.point), maximum))
     }
 }
 
-/// Fits with every kind of moment.
+/// Fits with every moment in `kinds`, each from its best start at 1/T = `a`; `none` are the noise vectors without a
+/// moment.
 fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseVector]) -> Ranked {
     let mut none = none.to_vec();
     let mut all: Ranked = Vec::new();
@@ -283,7 +284,7 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         }
         let restricted = |point: &Point| point.restricted;
         let start = match kind {
-            MomentKind::None if none[0].rudder => {
+            MomentKind::None if none[0].has_rudder_error => {
                 search.best_start(&search.entry_starts(a, &none, RUDDER_INDEX), restricted)
             }
             MomentKind::None => search.evaluate((a, none.clone())),
@@ -335,7 +336,7 @@ fn coloured_compass_starts(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
     let alone = all.iter().map(|(_, maximum)| maximum).find(|maximum| is_plain(maximum));
     let alone = alone.filter(|_| best.is_some_and(|best| !is_plain(best)));
     let coloured = |maximum: &Maximum| {
-        let vectors = maximum.point.vectors.iter().map(|vector| NoiseVector { coloured: true, ..*vector });
+        let vectors = maximum.point.vectors.iter().map(|vector| NoiseVector { has_coloured_compass: true, ..*vector });
         (maximum.point.inverse_time, vectors.collect())
     };
     [best, alone].into_iter().flatten().filter(is_correlated).map(coloured).collect()

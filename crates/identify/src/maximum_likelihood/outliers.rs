@@ -105,7 +105,7 @@ fn isolation(sides: [Option<Neighbours>; 2]) -> f64 {
     }
 }
 
-/// Comparison of every reading with its neighbours before and after.
+/// Distance of every kept reading from the median of its neighbours: of those before, and of those after.
 fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> {
     let values: Vec<f64> = kept.iter().map(|&place| residual[place]).collect();
     let rows = values.len();

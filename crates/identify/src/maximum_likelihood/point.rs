@@ -133,7 +133,7 @@ impl Record {
 
     /// Declared rudder error of a noise vector, rad.
     pub fn declared_rudder_error(&self, vector: &NoiseVector) -> Option<f64> {
-        self.declared.filter(|_| vector.rudder)
+        self.declared.filter(|_| vector.has_rudder_error)
     }
 
     /// Number of unknowns of the record alone: initial state and jumps.
@@ -203,7 +203,8 @@ fn project_off(unit: &[f64], column: &mut [f64]) -> f64 {
     share
 }
 
-/// Rows of one instrument.
+/// Rows of one instrument: `one`, which is 1 for a heading and 0 for a yaw rate, φ₁, G and H, the reading, and the
+/// derivatives of φ₁, G and H with respect to 1/T.
 fn instrument_rows(
     one: f64,
     [homogeneous, rudder, constant]: [&[f64]; 3],
@@ -276,19 +277,19 @@ impl WhitenedColumns {
         by_yaw_rate.iter().zip(steered).map(|(f, steered)| anchor.yaw_rate * f + steered).collect()
     }
 
-    /// Products of the sensitivities to 1/T, b and b δ_r.
+    /// Information XᵀX of (1/T, b, b δ_r), from their whitened and projected sensitivities; that to 1/T is `by_time`.
     fn motion(&self, by_time: &[f64]) -> Matrix3<f64> {
         let [rudder, constant, _] = &self.projected;
         Matrix3::from(gram([by_time, rudder, constant]))
     }
 
-    /// Readings minus the response to the steering.
+    /// Whitened readings minus b G + b δ_r H, all projected off the nuisance columns.
     fn residual(&self, gain: f64, offset: f64) -> Vec<f64> {
         let [rudder, constant, readings] = &self.projected;
         readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
     }
 
-    /// State at the anchor.
+    /// Heading and yaw rate at the anchor for given b and b δ_r, by back substitution; 0 where they are unobservable.
     fn start(&self, gain: f64, offset: f64) -> Option<State> {
         let [rudder, constant, readings] = &self.shares;
         let along = (0..readings.len()).map(|k| readings[k] - gain * rudder[k] - offset * constant[k]);
@@ -359,7 +360,7 @@ impl RecordAtPoint {
     }
 }
 
-/// Number of readings of all records.
+/// Number of readings of all records, compass and gyro.
 pub(super) fn reading_count(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
@@ -379,7 +380,8 @@ pub(super) fn evaluate(records: &[Record], starts: &[Start]) -> Vec<Option<Point
     starts.iter().map(point).collect()
 }
 
-/// Best fit from the whitened columns of every record.
+/// Best b and b δ_r over all records from their whitened columns; `None` unless b is positive and the likelihood
+/// finite.
 fn point(records: &[Record], (inverse_time, vectors): &Start, columns: Vec<WhitenedColumns>) -> Option<Point> {
     let all = reading_count(records);
     let weights = records.iter().zip(vectors).zip(&columns);

@@ -82,7 +82,7 @@ impl ScoreAndInformation {
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
         let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
-        let by_ship = (vector.moment != MomentKind::None || vector.rudder)
+        let by_ship = (vector.moment != MomentKind::None || vector.has_rudder_error)
             .then(|| DIFFERENCE * (a.abs() + record.track.duration().recip()));
         let active: Vec<usize> = vector.active_entries(record.has_gyro()).collect();
         let moved = active.iter().map(|&entry| {

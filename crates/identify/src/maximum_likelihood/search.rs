@@ -49,7 +49,7 @@ impl Ranges {
         }
     }
 
-    /// Minimum and maximum logarithm of an entry.
+    /// Minimum and maximum of the logarithm of an entry of the noise vector for this record.
     fn range(&self, vector: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
@@ -85,7 +85,7 @@ pub(super) struct Search<'a> {
 pub(super) struct Maximum {
     pub point: Point,
     pub derivatives: ScoreAndInformation,
-    pub converged: bool,
+    pub has_converged: bool,
 }
 
 impl Search<'_> {
@@ -95,7 +95,7 @@ impl Search<'_> {
         evaluate(self.records, &[start]).pop()?
     }
 
-    /// Points at starts, two at a time.
+    /// Points at starts, computed two at a time; `None` for a start without a ship or a finite likelihood.
     fn points(&mut self, starts: &[Start]) -> impl Iterator<Item = Option<Point>> {
         let records = self.records;
         let evaluations = &mut self.evaluations;
@@ -154,7 +154,10 @@ impl Search<'_> {
         LEVELS.map(level).into()
     }
 
-    /// Starts for gusts: short gusts, which act like a white moment, and long gusts, which act like a walk.
+    /// Starts for gusts d' = −d/τ + w of standard deviation σ, with τ in shares of the record.
+    ///
+    /// Short gusts, τ = 0.01 and 0.05, act like a white moment of density q: σ² = q/(2τ). Long gusts, τ = 0.1 and 0.5,
+    /// act like a walk whose increments have density q: σ² = q τ/2.
     pub fn gust_starts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<Start> {
         let mut starts = Vec::new();
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
@@ -195,12 +198,12 @@ impl Search<'_> {
         for _ in 0..self.iterations {
             let score = picked(&derivatives.score, &free);
             let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
-                return Some(Maximum { point, derivatives, converged: false });
+                return Some(Maximum { point, derivatives, has_converged: false });
             };
             let promise = -step.dot(&score);
             let settled = if free.len() > 1 { MIN_DECREASE } else { MIN_DECREASE_ALONE };
             if promise <= settled {
-                return Some(Maximum { point, derivatives, converged: true });
+                return Some(Maximum { point, derivatives, has_converged: true });
             }
             let largest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
@@ -214,7 +217,7 @@ impl Search<'_> {
             });
             let Some(lower) = lower else {
                 // No step decreases it any further: a minimum to rounding.
-                return Some(Maximum { point, derivatives, converged: promise < SLACK });
+                return Some(Maximum { point, derivatives, has_converged: promise < SLACK });
             };
             point = lower;
             derivatives = self.score_and_information(&point)?;
@@ -226,7 +229,7 @@ impl Search<'_> {
                 free = now;
             }
         }
-        Some(Maximum { point, derivatives, converged: false })
+        Some(Maximum { point, derivatives, has_converged: false })
     }
 
     /// Indices of the free unknowns in the score: an entry at the edge of its range is free only if the score points
@@ -248,7 +251,7 @@ impl Search<'_> {
         free
     }
 
-    /// Noise vectors after a step.
+    /// 1/T and noise vectors after a step of the free unknowns; the noise stays within its ranges.
     fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> Start {
         let by = |index: usize| free.iter().position(|&number| number == index).map_or(0.0, |k| step[k]);
         let mut index = SHARED_PARAMETERS;
@@ -308,7 +311,7 @@ fn reduced(information: &DMatrix<f64>, selected: &[usize]) -> Option<DMatrix<f64
     Some(pick(selected, selected) - &cross * inner.solve(&cross.transpose()))
 }
 
-/// Noise vector with the initial gyro error of a search.
+/// Noise vector with the gyro error from which a search begins: σ_r/σ = 1/(e √`spacing`).
 pub(super) fn gyro_start(ranges: &Ranges, vector: &NoiseVector) -> NoiseVector {
     ranges.with(vector, GYRO_INDEX, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

@@ -21,7 +21,7 @@ pub enum MomentChoice {
 }
 
 impl MomentChoice {
-    /// Kinds of moment that are fitted.
+    /// Kinds of moment that the choice admits.
     pub(super) fn kinds(self) -> &'static [MomentKind] {
         match self {
             Self::Chosen => &MomentKind::ALL,
@@ -70,9 +70,11 @@ pub struct Settings {
     /// Error of the recorded rudder: `declared`, `none` or `estimated`.
     pub rudder: RudderChoice,
     /// `true` if the yaw rate is used, provided that every record has one.
-    pub yaw_rate: bool,
+    #[serde(rename = "yaw-rate")]
+    pub uses_yaw_rate: bool,
     /// `true` if spikes are left out and jumps of the compass estimated.
-    pub outliers: bool,
+    #[serde(rename = "outliers")]
+    pub removes_outliers: bool,
     /// Maximum number of scoring steps for one kind of noise.
     pub iterations: usize,
 }
@@ -83,8 +85,8 @@ impl Default for Settings {
             moment: MomentChoice::default(),
             compass: CompassChoice::default(),
             rudder: RudderChoice::default(),
-            yaw_rate: true,
-            outliers: true,
+            uses_yaw_rate: true,
+            removes_outliers: true,
             iterations: 40,
         }
     }

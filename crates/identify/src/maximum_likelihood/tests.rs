@@ -110,10 +110,9 @@ fn the_score_is_the_derivative() {
         .map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true, None))
         .collect();
     for moment in MomentKind::ALL {
-        let vectors = [
-            NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
-            NoiseVector { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
-        ];
+        let plain = NoiseVector { moment, log: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() };
+        let log = [-6.5, 3.0, -6.0, 1.0, -1.0];
+        let vectors = [plain, NoiseVector { moment, has_rudder_error: true, has_coloured_compass: true, log }];
         let a = 0.063;
         let fit = |a: f64, vectors: &[NoiseVector]| {
             // Beside another start, as a search evaluates them.
@@ -205,7 +204,7 @@ fn outliers_are_left_out_and_listed() {
             assert!((spoilt.value - clean.value).abs() < sd, "{} against {} ± {sd}", spoilt.value, clean.value);
         }
     }
-    let raw = Settings { outliers: false, ..Settings::default() }.build().expect("valid");
+    let raw = Settings { removes_outliers: false, ..Settings::default() }.build().expect("valid");
     let trial = spoilt(&|row, psi| if row == 77 { psi + from_deg(1.5) } else { psi });
     assert_eq!(raw.identify(&[trial]).expect("an answer").diagnostic("left_out"), Some(0.0));
 }

@@ -7,7 +7,8 @@ use crate::profile::solve2;
 /// Maximum number of iterations of the weights of the records of one ship.
 const MAX_WEIGHT_ITERATIONS: usize = 20;
 
-/// Relative change of the variances at convergence of the weights.
+/// Maximum relative change of any variance in an iteration at which the weights have converged; without convergence the
+/// weights of the last iteration are used.
 const WEIGHT_TOLERANCE: f64 = 1e-12;
 
 /// Quantities that determine the weight of a record.

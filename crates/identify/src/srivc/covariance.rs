@@ -31,7 +31,7 @@ impl Residuals {
     ///
     /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
     pub fn new(records: &[SrivcRecord], point: &Point, blocks: &[InstrumentalEquations]) -> Option<Self> {
-        let count: usize = records.iter().map(|record| record.observed).sum();
+        let count: usize = records.iter().map(|record| record.observed_headings).sum();
         let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;
         if degrees_of_freedom <= 0.0 {
             return None;
@@ -40,8 +40,8 @@ impl Residuals {
         let mut residuals = Vec::with_capacity(records.len());
         let mut scores = Vec::with_capacity(records.len());
         for ((record, block), &start) in records.iter().zip(blocks).zip(&point.starts) {
-            let mut record_residuals = Vec::with_capacity(record.observed);
-            let mut record_scores = [(); 3].map(|()| Vec::with_capacity(record.observed));
+            let mut record_residuals = Vec::with_capacity(record.observed_headings);
+            let mut record_scores = [(); 3].map(|()| Vec::with_capacity(record.observed_headings));
             let (mut sum, mut squares) = (0.0, 0.0);
             Filters::run(record, point.shared, start, |row, filters| {
                 let residual = row.heading - filters.motion.heading;
@@ -56,7 +56,7 @@ impl Residuals {
                 sum += row.heading;
                 squares += row.heading * row.heading;
             });
-            total += squares - sum * sum / record.observed as f64;
+            total += squares - sum * sum / record.observed_headings as f64;
             residuals.push(record_residuals);
             scores.push(record_scores);
         }

@@ -79,14 +79,14 @@ impl Filters {
             if let Some(before) = before {
                 filters.advance(before, row);
             }
-            if row.observed {
+            if row.is_observed {
                 visit(row, &filters);
             }
             before = Some(row);
         }
     }
 
-    /// Steps the filters from the row `before` to `row`.
+    /// Advances all filters from the row `before` to `row`, with rudder and heading linear between them.
     #[inline]
     fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;

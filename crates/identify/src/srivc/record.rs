@@ -16,7 +16,7 @@ pub(super) struct FilterRow {
     /// Heading relative to the first row, rad; interpolated if it was not observed.
     pub heading: f64,
     /// `true` if the heading was observed.
-    pub observed: bool,
+    pub is_observed: bool,
 }
 
 /// Rows of a trial from the first to the last observed heading, including rows without a heading, and one row without a
@@ -26,7 +26,7 @@ pub(super) struct SrivcRecord {
     /// Rows, in the order in which the filters run.
     pub rows: Vec<FilterRow>,
     /// Number of observed headings.
-    pub observed: usize,
+    pub observed_headings: usize,
 }
 
 impl SrivcRecord {
@@ -37,14 +37,14 @@ impl SrivcRecord {
         let mut rows: Vec<FilterRow> = Vec::with_capacity(trial.len() + trial.rudder_corners().len());
         let mut corners = trial.rudder_corners().iter().peekable();
         let (mut first, mut last, mut next) = (0, 0, 0);
-        let mut observed = 0;
+        let mut observed_headings = 0;
         let (mut interval, mut before) = (0.0, 0.0);
         for row in trial.observed_rows() {
-            if observed == 0 {
+            if observed_headings == 0 {
                 (first, last, next, before) = (row, row, row, time[row]);
             }
             let (from, to) = (heading[last], heading[row]);
-            let mut push = |t: f64, share: f64, rudder: f64, observed: bool| {
+            let mut push = |t: f64, share: f64, rudder: f64, is_observed: bool| {
                 let elapsed = t - before;
                 if (elapsed - interval).abs() > INTERVAL_TOLERANCE * interval {
                     interval = elapsed;
@@ -54,7 +54,7 @@ impl SrivcRecord {
                     interval,
                     rudder,
                     heading: from + share * (to - from) - heading[first],
-                    observed,
+                    is_observed,
                 });
             };
             let share = |t: f64| (t - time[last]) / (time[row] - time[last]);
@@ -69,9 +69,9 @@ impl SrivcRecord {
                 next += 1;
             }
             last = row;
-            observed += 1;
+            observed_headings += 1;
         }
-        Self { rows, observed }
+        Self { rows, observed_headings }
     }
 
     /// Record with time running backwards: ψ'' + a ψ' = b (δ + δ_r) keeps b and δ_r and turns a into −a.
@@ -99,11 +99,11 @@ mod tests {
         let time: Vec<f64> = (0..12).map(|row| 7.0 + 0.1 * f64::from(row)).collect();
         let rudder = (0..12).map(|row| 0.1 * f64::from(row)).collect();
         let record = SrivcRecord::new(&record("gaps", time, heading, rudder));
-        assert_eq!((record.rows.len(), record.observed), (10, 8));
+        assert_eq!((record.rows.len(), record.observed_headings), (10, 8));
         for (index, row) in record.rows.iter().enumerate() {
             assert_abs_diff_eq!(row.rudder, 0.1 * (index + 1) as f64, epsilon = 1e-12);
             assert_abs_diff_eq!(row.heading, 0.01 * index as f64, epsilon = 1e-12);
-            assert_eq!(row.observed, ![4, 5].contains(&index));
+            assert_eq!(row.is_observed, ![4, 5].contains(&index));
         }
         // Equal except for rounding: a single interval.
         assert!(record.rows[2..].iter().all(|row| row.interval == record.rows[1].interval));

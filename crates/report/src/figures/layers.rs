@@ -59,7 +59,7 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
     }
     let height = |stack: &Stack| {
         let rows = stack.columns.map_or(1, |across| stack.panels.len().div_ceil(across.max(1)));
-        if stack.equal { 0.0 } else { stack.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
+        if stack.has_equal_scales { 0.0 } else { stack.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
     };
     let all: f64 = side_by_side(&data, theme).map(|stacks| stacks.iter().map(height).fold(0.0, f64::max)).sum();
     let share = (WIDE[0] / all).clamp(WIDE[1], 1.0);
@@ -103,7 +103,7 @@ pub(super) fn annotated(
             sheet.y = top;
             let (mut grid, mut is_cut) = grid(stack, theme);
             grid.left = Some(if stack.is_half { 0.0 } else { left });
-            if stack.equal {
+            if stack.has_equal_scales {
                 // Longer labels of the vertical axis reduce the width, which changes the axis.
                 let mut margin = left;
                 for _ in 0..3 {
@@ -172,7 +172,7 @@ fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
 
 /// Number of panels of a stack side by side.
 fn columns(stack: &Stack, theme: &Theme) -> usize {
-    let narrower = usize::from(theme.is_narrow() && !stack.unbroken);
+    let narrower = usize::from(theme.is_narrow() && !stack.is_unbroken);
     stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 

@@ -67,12 +67,12 @@ impl AxisSpec {
 
     /// The axis limited to `times` the median extent of the data from a centre.
     pub fn within(self, times: f64, centre: Option<f64>) -> Self {
-        Self { reach: Some(AxisReach { times, centre, symmetric: false }), ..self }
+        Self { reach: Some(AxisReach { times, centre, is_symmetric: false }), ..self }
     }
 
-    /// The axis limited symmetrically about zero.
+    /// The axis limited to ±`times` the median extent of the data, centred on zero.
     pub fn about_zero(self, times: f64) -> Self {
-        Self { reach: Some(AxisReach { times, centre: Some(0.0), symmetric: true }), ..self }
+        Self { reach: Some(AxisReach { times, centre: Some(0.0), is_symmetric: true }), ..self }
     }
 
     /// The axis over some data with free space at the ends, and whether data are cut.
@@ -336,13 +336,13 @@ pub struct Stack {
     /// Small multiples: their number side by side; all share the one axis and the one row.
     pub columns: Option<usize>,
     /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
-    pub unbroken: bool,
+    pub is_unbroken: bool,
     /// `true` if the stack has half the width of the figure; two of them are side by side if there is room.
     pub is_half: bool,
     /// `true` if there is a line at zero from bottom to top.
     pub zero: bool,
     /// `true` if a unit has the same length on both axes.
-    pub equal: bool,
+    pub has_equal_scales: bool,
 }
 
 impl Stack {

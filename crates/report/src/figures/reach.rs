@@ -12,14 +12,14 @@ pub struct AxisReach {
     /// Centre of the axis; `None`: the median of the data.
     pub centre: Option<f64>,
     /// `true` if the axis is symmetric about the centre.
-    pub symmetric: bool,
+    pub is_symmetric: bool,
 }
 
 /// Data along an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Extents {
     /// Ends of everything that sets the axis, one pair per item.
-    pub core: Vec<(f64, f64)>,
+    pub item_ranges: Vec<(f64, f64)>,
     /// Values that are always visible.
     pub fixed: Vec<f64>,
     /// Values that may widen the axis, each with its maximum share of the range of all other data.
@@ -45,12 +45,12 @@ const HIGHEST: f64 = 10.0;
 impl Extents {
     /// Adds an item that sets the axis.
     pub(super) fn add(&mut self, values: impl IntoIterator<Item = f64>) {
-        self.core.extend(axis::range(values));
+        self.item_ranges.extend(axis::range(values));
     }
 
     /// Ends of the axis, and whether a soft value is cut; `None` without data.
     pub(super) fn ends(&self, reach: Option<AxisReach>) -> (Option<(f64, f64)>, bool) {
-        let within = reach.map_or_else(|| self.core.clone(), |reach| self.within(reach));
+        let within = reach.map_or_else(|| self.item_ranges.clone(), |reach| self.within(reach));
         let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };
         let fixed = self.fixed.iter().copied();
         let Some((lo, hi)) = axis::range(flat(&within).into_iter().chain(fixed)) else {
@@ -67,7 +67,7 @@ impl Extents {
             is_cut |= *value < lo - room || *value > hi + room;
         }
         match reach {
-            Some(AxisReach { symmetric: true, centre, .. }) => {
+            Some(AxisReach { is_symmetric: true, centre, .. }) => {
                 let centre = centre.unwrap_or(0.0);
                 let half = (ends.0 - centre).abs().max((ends.1 - centre).abs());
                 (Some((centre - half, centre + half)), is_cut)
@@ -78,19 +78,19 @@ impl Extents {
 
     /// Extents within the reach of an axis; an extent partly within it is shortened.
     fn within(&self, AxisReach { times, centre, .. }: AxisReach) -> Vec<(f64, f64)> {
-        let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
+        let middles = self.item_ranges.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
-        let extents = self.core.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
+        let extents = self.item_ranges.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
         let usual = upper_median(extents.filter(|extent| *extent > 0.0)).unwrap_or(f64::INFINITY);
         let room = times * usual.max(LEAST_USUAL * centre.abs());
         let (least, most) = (centre - room, centre + room);
-        let near = self.core.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);
+        let near = self.item_ranges.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);
         near.map(|(lo, hi)| (lo.max(least), hi.min(most))).collect()
     }
 
     /// Values that have a place on an axis of equal factors.
     pub(super) fn positive(&self) -> Vec<f64> {
-        let all = self.core.iter().flat_map(|(lo, hi)| [*lo, *hi]).chain(self.fixed.iter().copied());
+        let all = self.item_ranges.iter().flat_map(|(lo, hi)| [*lo, *hi]).chain(self.fixed.iter().copied());
         let mut values: Vec<f64> = all.filter(|value| *value >= 0.0 && value.is_finite()).collect();
         let lowest = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
         let highest = values.iter().copied().fold(0.0, f64::max);
@@ -130,11 +130,11 @@ mod tests {
         [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
         let ends = |data: &Extents, reach| data.ends(reach).0.expect("there are data");
         assert_eq!(ends(&data, None), (0.099, 9.9));
-        let reach = AxisReach { times: 4.0, centre: None, symmetric: false };
+        let reach = AxisReach { times: 4.0, centre: None, is_symmetric: false };
         assert!(ends(&data, Some(reach)).1 < 0.2, "{:?}", ends(&data, Some(reach)));
         data.fixed.push(1.0);
         assert_eq!(ends(&data, Some(reach)).1, 1.0);
-        let about = AxisReach { centre: Some(0.0), symmetric: true, ..reach };
+        let about = AxisReach { centre: Some(0.0), is_symmetric: true, ..reach };
         let (lo, hi) = ends(&data, Some(about));
         assert_eq!(lo, -hi);
     }
@@ -148,7 +148,7 @@ mod tests {
         data.soft.push((1e9, 0.25));
         assert_eq!(data.ends(None), (Some((0.0, 12.5)), true));
         data.soft = vec![(0.1, 1.0), (1e-9, 1.0), (40.0, 1.0)];
-        data.core = vec![(1.0, 10.0)];
+        data.item_ranges = vec![(1.0, 10.0)];
         assert_eq!(data.positive(), [1.0, 10.0, 40.0]);
     }
 }

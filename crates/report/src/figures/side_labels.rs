@@ -15,7 +15,7 @@ const GAP: f64 = 0.8;
 
 fn text(layer: &Layer, theme: &Theme) -> TextLine {
     let name = layer.name.as_deref().unwrap_or_default();
-    TextLine { bold: true, colour: layer.colour(), ..TextLine::new(name, theme.small_font, HPos::Left) }
+    TextLine { is_bold: true, colour: layer.colour(), ..TextLine::new(name, theme.small_font, HPos::Left) }
 }
 
 /// Width of the names with the gap to the frame, points.

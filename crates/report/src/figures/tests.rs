@@ -112,7 +112,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ("layers", layered.into()),
         ("clouds", Panels::new(clouds).into()),
         ("aside", Panels { names_aside: true, ..Panels::new(marks) }.into()),
-        ("track", Panels::new(Stack { equal: true, ..track }).into()),
+        ("track", Panels::new(Stack { has_equal_scales: true, ..track }).into()),
     ]
 }
 
@@ -416,7 +416,7 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let curve = PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>());
             let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
             let rows = vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), layers)];
-            let stack = Stack { equal: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
+            let stack = Stack { has_equal_scales: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
             let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::new(stack) }).draw("", &theme);
             let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
             let sides: Vec<f64> = panel.skip(2).collect();

@@ -133,22 +133,22 @@ pub struct SwayCoupling<R = f64> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EffectTarget {
     /// `true` if the effect transforms the acting rudder.
-    pub rudder: bool,
+    pub transforms_rudder: bool,
     /// `true` if the effect scales damping and gain.
-    pub scale: bool,
+    pub scales_response: bool,
     /// `true` if the effect adds a yaw acceleration.
-    pub moment: bool,
+    pub adds_moment: bool,
 }
 
 impl EffectTarget {
     /// No quantity.
-    pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
+    pub const NONE: Self = Self { transforms_rudder: false, scales_response: false, adds_moment: false };
     /// Acting rudder.
-    pub const RUDDER: Self = Self { rudder: true, ..Self::NONE };
+    pub const RUDDER: Self = Self { transforms_rudder: true, ..Self::NONE };
     /// Damping and gain.
-    pub const SCALE: Self = Self { scale: true, ..Self::NONE };
+    pub const SCALE: Self = Self { scales_response: true, ..Self::NONE };
     /// Yaw acceleration.
-    pub const MOMENT: Self = Self { moment: true, ..Self::NONE };
+    pub const MOMENT: Self = Self { adds_moment: true, ..Self::NONE };
 }
 
 /// Description of an effect: identifier, form, equation and parameters.

@@ -58,8 +58,7 @@ impl Response {
                 state[place] -= here / slope;
             }
         }
-        let instant = self.instant(0.0, state, &input);
-        self.accelerations(state, &input, &instant).0
+        self.accelerations(state, &input, &self.instant(0.0, state, &input)).0
     }
 }
 

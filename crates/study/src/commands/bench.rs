@@ -147,13 +147,13 @@ pub fn run(request: &BenchRequest, common: &CommonOptions) -> Result<(), Failure
     let folder = ResultFolder::make(&folder_for(BENCH, &place)?)?;
     let results =
         run_benchmark(request, common.seed, &Vec::new(), Some(&folder), &Terminal::new("trials", common.quiet))?;
-    publish(&results, &folder, &theme, common)
+    write_results(&results, &folder, &theme, common)
 }
 
 /// Writes the tables, pages and figures of a benchmark and prints the leaderboards.
 ///
 /// Fails if they cannot be written.
-pub fn publish(
+pub fn write_results(
     results: &BenchDocument,
     folder: &ResultFolder,
     theme: &Theme,

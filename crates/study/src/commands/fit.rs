@@ -42,13 +42,13 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
         let answers = fit.document.ships.iter().map(|(method, ship)| (method.as_str(), ship));
         draws::write_estimates(&folder, answers, request.draws.draws, common.seed.unwrap_or_default())?;
     }
-    publish(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
+    write_results(&folder, &fit.document, &curves, &text, theme.as_ref(), common)
 }
 
 /// Writes the figures and the page of a fit into a folder and prints its table; `text` is that of `fit.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn publish(
+pub fn write_results(
     folder: &ResultFolder,
     document: &FitDocument,
     curves: &FitCurves,

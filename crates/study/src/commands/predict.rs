@@ -56,13 +56,13 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
     if request.draws_file {
         draws::write_ships(&folder, &predicted)?;
     }
-    publish(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
+    write_results(&folder, &predicted, &text, theme.as_ref(), common, &warnings.ranked())
 }
 
 /// Writes the figures and the page of a prediction into a folder and prints it; `text` is that of `predict.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn publish(
+pub fn write_results(
     folder: &ResultFolder,
     predicted: &PredictDocument,
     text: &str,

@@ -18,7 +18,7 @@ use crate::options::{CommonOptions, Format, StudyFigureOptions};
 use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::page_files::BROWSER;
-use crate::views::publish::publish;
+use crate::views::publish::write_results;
 use crate::views::studies_page;
 
 /// Arguments of `study report`.
@@ -82,29 +82,24 @@ fn report(stored: &Path, request: &ReportRequest, common: &CommonOptions) -> Res
         () if has(TRACE) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
-            trace::publish(
-                &folder,
-                &document,
-                &TraceCurves::read(&document, stored)?,
-                &text,
-                Some(&theme),
-                common,
-                &[],
-            )?
+            let curves = TraceCurves::read(&document, stored)?;
+            trace::write_results(&folder, &document, &curves, &text, Some(&theme), common, &[])?
         }
         () if has(FIT) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
             let (curves, _) = read_json(&stored.join(CURVES), "fit")?;
-            fit::publish(&folder, &document, &curves, &text, Some(&theme), common)?
+            fit::write_results(&folder, &document, &curves, &text, Some(&theme), common)?
         }
         () if has(PREDICT) => {
             let (folder, theme) = (held()?, theme()?);
             let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
             let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
-            predict::publish(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
+            predict::write_results(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
         }
-        () if has(BENCH) => bench::publish(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?,
+        () if has(BENCH) => {
+            bench::write_results(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?
+        }
         () => rebuild(stored, style, common)?,
     }
     if *open { show(&folder.join(BROWSER)) } else { Ok(()) }
@@ -115,7 +110,7 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &CommonOptions) -> R
     store::required_manifest(rows)?;
     let stored = complete(&ResultFolder::make(rows)?, &Terminal::new("trials", common.quiet))?;
     let folder = ResultFolder::make(common.out.as_deref().unwrap_or(rows))?;
-    publish(&stored, &folder, &theme, style.figures, common)
+    write_results(&stored, &folder, &theme, style.figures, common)
 }
 
 /// Program that opens a file in the user's browser.

@@ -15,7 +15,7 @@ use crate::documents::folder_for;
 use crate::options::{CommonOptions, RunRequest};
 use crate::screen;
 use crate::terminal::Terminal;
-use crate::views::publish::publish;
+use crate::views::publish::write_results;
 
 /// Runs a scenario, or one shard of it, and publishes it as `study report` does.
 pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<(), Failure> {
@@ -30,7 +30,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
     let terminal = Terminal::new("trials", common.quiet);
     let Some(shard) = request.shard else {
         let stored = collect(&scenario, &folder, request.restart, &terminal)?;
-        return publish(&stored, &folder, &theme, request.style.figures, common);
+        return write_results(&stored, &folder, &theme, request.style.figures, common);
     };
     let manifest = collect_shard(&scenario, shard, &folder, request.restart, &terminal)?;
     let place = folder.path().display().to_string();

@@ -14,7 +14,7 @@ use trial::file::{self, FileKind};
 
 use crate::options::{CommonOptions, StudyFigureOptions};
 use crate::terminal::Terminal;
-use crate::views::publish::publish;
+use crate::views::publish::write_results;
 
 /// Arguments of `study score`.
 #[derive(Debug, Clone, Args)]
@@ -56,7 +56,7 @@ pub fn run(request: &ScoreRequest, common: &CommonOptions) -> Result<(), Failure
     let scenario = answers.into_iter().try_fold(scenario, add)?;
     let folder = ResultFolder::make(common.out.as_deref().unwrap_or(&place))?;
     let stored = collect(&scenario, &folder, request.restart, &terminal)?;
-    publish(&stored, &folder, &theme, request.style.figures, common)
+    write_results(&stored, &folder, &theme, request.style.figures, common)
 }
 
 /// Scenario of the answers, with the seed of their trials.

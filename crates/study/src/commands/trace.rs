@@ -38,14 +38,14 @@ pub fn run(request: &TraceRequest, common: &CommonOptions) -> Result<(), Failure
         let answer = std::iter::once(("trace", &traced.document.ship));
         draws::write_estimates(&folder, answer, request.draws.draws, common.seed.unwrap_or_default())?;
     }
-    publish(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
+    write_results(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
     if interrupt::is_stop_requested() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
 }
 
 /// Writes the figures and the page of a trace into a folder and prints its results; `text` is that of `trace.json`.
 ///
 /// Fails if a file cannot be written.
-pub fn publish(
+pub fn write_results(
     folder: &ResultFolder,
     document: &TraceDocument,
     curves: &TraceCurves,

@@ -40,7 +40,8 @@ fn count(count: usize) -> String {
     if count == 0 { String::new() } else { count.to_string() }
 }
 
-/// Columns of a leaderboard after those of `first`.
+/// Head of a leaderboard: the columns of `first`, then median, quantile, failures, ratio to reference, share better and
+/// rank; with indices also the coverage of K and T.
 fn columns(first: TableHead, reference: &str, indices: bool) -> TableHead {
     let head = first.numbers(["median"]).texts(["95 %"]).numbers(["90 % within"]).counts(["failed"]);
     let head = head.numbers([format!("over {reference}")]).texts(["95 %"]).numbers(["better"]).unit("%");
@@ -55,16 +56,16 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
         standing.method.clone(),
         value(standing.median),
         ends(standing.median),
-        value(standing.high),
+        value(standing.quantile_90),
         count(standing.failed),
         paired(standing.ratio, value),
         paired(standing.ratio, ends),
-        paired(standing.better.map(percent), |figure| figure.value.map_or_else(String::new, |value| fixed(value, 0))),
+        paired(standing.share_better.map(percent), |share| share.value.map_or_else(String::new, |x| fixed(x, 0))),
         fixed(standing.rank, 1),
     ];
     if indices {
-        match standing.holds {
-            Some(holds) => cells.extend(holds.map(share)),
+        match standing.coverage {
+            Some(coverage) => cells.extend(coverage.map(share)),
             None => cells.extend([MISSING, MISSING].map(str::to_owned)),
         }
     }
@@ -109,9 +110,9 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
         }
     };
     for (board, row) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |row| (board, row))) {
-        let held = |place: usize| row.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].cases as f64);
+        let held = |place: usize| row.coverage.map(|of| 100.0 * of[place].count as f64 / of[place].cases as f64);
         let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &row.method];
-        let figures = [Some(row.median), Some(row.high), row.ratio, row.better.map(percent)];
+        let figures = [Some(row.median), Some(row.quantile_90), row.ratio, row.share_better.map(percent)];
         let line = head.map(str::to_owned).into_iter().chain([row.failed.to_string()]);
         table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(row.rank), held(0), held(1)].map(text)));
     }
@@ -237,8 +238,8 @@ pub fn answer_rows(results: &BenchDocument) -> Table {
                 number(answer.score),
                 number(errors.map(|errors| errors[0])),
                 number(errors.map(|errors| errors[1])),
-                truth(answer.holds.map(|holds| holds[0])),
-                truth(answer.holds.map(|holds| holds[1])),
+                truth(answer.contains_truth.map(|contained| contained[0])),
+                truth(answer.contains_truth.map(|contained| contained[1])),
                 missing.clone().unwrap_or_default(),
                 judgement,
                 named.join(" + "),

@@ -77,7 +77,7 @@ impl ErrorMeasure {
         matches!(self, Self::Rms | Self::OverBound)
     }
 
-    /// Reference value of a panel.
+    /// Nominal coverage, 95 %, for the two panels of coverage; `None` for every other panel.
     fn reference(self, panel: usize) -> Option<Reference95> {
         (self == Self::Coverage && panel < 2).then(|| Reference95::line(95.0))
     }
@@ -241,7 +241,7 @@ impl<'a> ComparedMethods<'a> {
         remark.map(str::to_owned)
     }
 
-    /// Meaning of marks beyond the axes.
+    /// Note on the arrows at the axes, for a measure that is an error; `None` for any other.
     fn beyond(&self) -> Option<String> {
         self.measure.is_of_errors().then(|| CUT_NOTE.to_owned())
     }

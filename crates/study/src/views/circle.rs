@@ -37,7 +37,7 @@ pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     format!("{name}, a turning circle to {side} with {}° of rudder: {figures}", fixed(rudder_deg.abs(), 1))
 }
 
-/// Figures of merit of a predicted circle.
+/// Sentence on a predicted circle: advance, transfer and tactical diameter in ship lengths, with 90 % intervals.
 fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
     let figures = [
         ("advance", circle.advance_lengths),
@@ -111,7 +111,7 @@ const NEARLY: f64 = 0.999;
 pub fn plan_view(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
     let layers = further.into_iter().chain(circles.iter().flat_map(CircleTrack::layers)).collect();
     let row = PanelRow::new(AxisSpec::decimal("along the approach [L]"), 0.62);
-    Stack { equal: true, ..Stack::over(AxisSpec::decimal("across, to starboard [L]"), vec![(row, layers)]) }
+    Stack { has_equal_scales: true, ..Stack::over(AxisSpec::decimal("across, to starboard [L]"), vec![(row, layers)]) }
 }
 
 /// Note on the dimension lines of a circle.

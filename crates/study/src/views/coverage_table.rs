@@ -105,7 +105,7 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     Some(table)
 }
 
-/// Share of trials with its 95 % interval.
+/// Share and the ends of its 95 % interval, %, as texts.
 fn percent(share: Option<Statistic>) -> [String; 3] {
     Statistic::value_and_ends(share).map(|value| optional(value.map(|value| 100.0 * value), 1))
 }

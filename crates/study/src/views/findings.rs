@@ -83,7 +83,7 @@ fn of_clouds(data: &Panels) -> String {
     range("scatter of T [%]", stack.panels.iter().filter_map(spread))
 }
 
-/// Range in the row with the widest spread.
+/// Range of values in the row with the largest ratio of its values; over all rows if each has one value.
 fn of_rows(data: &NamedRows) -> String {
     let Some(column) = data.columns.get(data.columns.len().min(2).wrapping_sub(1)) else {
         return String::from("No data");

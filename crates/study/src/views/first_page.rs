@@ -39,7 +39,7 @@ const DRAUGHTS: [ParticularsColumn; 3] = [
     ("mean draught", |entry| entry.draught_m.map(metres)),
 ];
 
-/// Columns that some record declares.
+/// Columns of particulars that have a value for at least one record.
 fn declared<'a>(
     records: &[(String, &TrialParticularsEntry)],
     columns: &'a [ParticularsColumn],

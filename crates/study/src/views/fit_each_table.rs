@@ -44,7 +44,7 @@ fn missing() -> String {
     MISSING.to_owned()
 }
 
-/// Word for a value, as in JSON.
+/// Name of a value as in JSON; the mark of a missing value for what is no text.
 fn word(value: &impl Serialize) -> String {
     match serde_json::to_value(value) {
         Ok(Value::String(word)) => word,

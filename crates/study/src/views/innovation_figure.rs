@@ -33,7 +33,7 @@ fn expected(rank: usize, count: usize) -> f64 {
     Normal::standard().inverse_cdf((rank as f64 - 0.375) / (count as f64 + 0.25))
 }
 
-/// Plotted ranks, in ascending order.
+/// Ranks of a normal plot that are drawn: all near both ends, and an even selection between them; ascending.
 fn ranks(count: usize) -> Vec<usize> {
     let step = count.div_ceil(MAX_DRAWN_RANKS);
     (1..=count).filter(|rank| *rank <= END_RANKS || *rank + END_RANKS > count || rank % step == 0).collect()

@@ -82,7 +82,7 @@ fn pale(mut layer: Layer) -> Layer {
 
 /// Highlights layers; returns a remark on methods that are missing in a panel.
 fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
-    let about = &highlight.methods();
+    let about = &highlight.method_labels();
     let Highlight { rows, over_bound, .. } = highlight;
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
@@ -178,7 +178,7 @@ fn keep_t(stack: &mut Stack) {
 /// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
 /// colon become one row, their mean.
 fn of_cells(data: &mut CellMap, highlight: &Highlight) -> Option<String> {
-    let (about, rows) = (&highlight.methods(), &highlight.rows);
+    let (about, rows) = (&highlight.method_labels(), &highlight.rows);
     data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
     let is_empty = |column: &usize| {
         let mut cells = data.panels.iter().flat_map(|(_, panel)| panel).map(|row| &row[*column]);

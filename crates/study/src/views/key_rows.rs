@@ -42,7 +42,7 @@ pub fn tint(colour: RGBColor) -> RGBColor {
 
 /// Highlights rows; returns a remark on their colours.
 pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
-    let about = &highlight.methods();
+    let about = &highlight.method_labels();
     let Highlight { rows, over_bound, .. } = highlight;
     data.columns.retain(|column| !is_of_k(&column.x.title));
     for column in &mut data.columns {
@@ -76,7 +76,7 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
     data.names.iter().any(|name| is_pale(name, rows)).then(|| String::from("Dark: the rows of the title."))
 }
 
-/// `true` if a row is not highlighted.
+/// `true` for a row that is neither highlighted nor the row of all cells.
 fn is_pale(name: &String, about: &[String]) -> bool {
     name != ALL_CELLS_ROW && !about.contains(name)
 }

@@ -18,7 +18,7 @@ const MAX_PANELS: usize = 4;
 /// Maximum plotted moment over time, and over a channel, in usual sizes: a jump would set the axis.
 const REACHES: [f64; 2] = [8.0, 2.5];
 
-/// Title of an axis over a channel.
+/// Title of the axis of a channel: name, symbol and unit.
 fn title_of(over: MomentChannel) -> String {
     match over {
         MomentChannel::YawRate => format!("yaw rate {} [°/s]", symbol("r")),

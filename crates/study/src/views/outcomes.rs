@@ -11,7 +11,7 @@ use report::number;
 use super::tables::head_of_cells;
 use super::tracing_table::has_several_traces;
 
-/// Kind of a ship, for figures and files.
+/// Kind of a ship by what it lacks: a known effect, an unknown moment, or nothing; for figures and files.
 fn kind(physics: &MissingPhysics) -> &'static str {
     match physics {
         MissingPhysics::Listed { .. } => "known",

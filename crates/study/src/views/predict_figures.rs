@@ -180,7 +180,7 @@ fn replay(replayed: &RecordReplay) -> Panels {
     bands(&replayed.heading, Some(recorded), rudder)
 }
 
-/// Track, north over east.
+/// Curve of a track, north over east, from points of north and east.
 fn from_above(track: &[[f64; 2]]) -> PlotCurve {
     let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
     PlotCurve::new(east, north)
@@ -229,7 +229,7 @@ fn track(prediction: &Prediction) -> Panels {
     let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
     let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
     let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::new(Stack { equal: true, ..stack }) }
+    Panels { cut, ..Panels::new(Stack { has_equal_scales: true, ..stack }) }
 }
 
 /// Prediction intervals of characteristics, with measured values and limits.
@@ -263,7 +263,7 @@ fn is_overshoot(name: &str) -> bool {
     name.ends_with("overshoot_deg")
 }
 
-/// Measured overshoots of replayed records.
+/// Row for every overshoot of a replayed record: the predicted interval, and below it the measured angle.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();

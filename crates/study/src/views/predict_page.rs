@@ -107,7 +107,7 @@ fn coverage(replayed: &RecordReplay) -> String {
     sentence
 }
 
-/// Sentence on the models of a correction.
+/// Statement on the files of the models from which a correction takes F and B.
 fn corrected_from(document: &PredictDocument) -> String {
     format!("F from {}, B from {}", document.model_files(), file_names(&document.ballast))
 }

@@ -55,7 +55,7 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
     table
 }
 
-/// Plain name of a source of uncertainty.
+/// Source of uncertainty in plain words: "choice of model" for `structure`.
 fn source_name(source: &str) -> String {
     source.replace("structure", "choice of model").replace("process-noise", "random yaw moment").replace('-', " ")
 }

@@ -21,7 +21,7 @@ use crate::options::{CommonOptions, FigureChoice, Format};
 use crate::screen;
 
 /// Writes the tables, the figures, `report.md` and `report.html` to a folder, and prints the tables.
-pub fn publish(
+pub fn write_results(
     stored: &StoredStudy,
     folder: &ResultFolder,
     theme: &Theme,

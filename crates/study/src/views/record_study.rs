@@ -171,7 +171,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
 }
 
-/// Angle as it is written at a mark.
+/// Angle, deg, with two significant digits and the sign of a degree.
 fn degrees(value: f64) -> String {
     format!("{}°", significant(value, 2))
 }

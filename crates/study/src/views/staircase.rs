@@ -47,7 +47,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("error {}°", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
     let row = PanelRow::zeroed(AxisSpec::new("heading [°]", TickRule::Angle), 0.085);
-    let stack = Stack { unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
+    let stack = Stack { is_unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
     let plot = Panels::new(stack);
     let caption = format!(
         "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \

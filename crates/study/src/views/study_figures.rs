@@ -103,7 +103,7 @@ pub fn chosen_figures(
     key.into_iter().chain(figures).collect()
 }
 
-/// All available figures.
+/// Every figure that the rows of the study allow, with its place on the page.
 fn all(stored: &StoredStudy, summary: &Summary) -> Vec<StudyFigure> {
     let mut figures = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
@@ -137,7 +137,7 @@ fn here(part: &str) -> String {
     if part.is_empty() { String::new() } else { format!(" Here: {part}.") }
 }
 
-/// Stem of a figure of one part of the study.
+/// Stem of a figure, followed by the slug of its part if the study has several.
 fn stem_of(stem: &str, part: &str) -> String {
     if part.is_empty() { stem.to_owned() } else { format!("{stem}-{}", slug(part)) }
 }
@@ -321,7 +321,7 @@ pub fn replay_error_finding(data: &Replays) -> String {
     capital(&findings::range("replay error, rms [°]", data.replays.iter().filter_map(named_rms)))
 }
 
-/// Finding: range of T over the methods.
+/// Finding of a showcase: range of the estimated T over the methods, and the true T.
 fn time_constants(data: &Intervals) -> String {
     let named_time = |estimate: &MethodEstimate| Some((estimate.origin.label().to_owned(), estimate.t_s?.value));
     let truth =

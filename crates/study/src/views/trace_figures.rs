@@ -119,7 +119,7 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
     replays_by_origin(record).into_iter().enumerate().map(model).collect()
 }
 
-/// A record with the models before and after.
+/// Heading and rudder of a record over time, with the replays before and after.
 fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
     let trial = &record.trial;
     let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
@@ -151,8 +151,7 @@ fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
         Outcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
-    let hollow = outcome == Outcome::NotObservable;
-    (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow })
+    (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow: outcome == Outcome::NotObservable })
 }
 
 /// Names of the effects with their probabilities.
@@ -211,7 +210,7 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     PageFigure::new("evidence", named_effects(trace), caption, data)
 }
 
-/// Plots of the residual before and after.
+/// Residual of the replays before and after against heading, yaw rate and rudder, and its spectrum.
 fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);

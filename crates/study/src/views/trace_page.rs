@@ -99,7 +99,7 @@ fn odd(document: &TraceDocument) -> String {
     format!("\nhulls fitted: {}; in {}, {departure}", forms.join(", "), hull.form)
 }
 
-/// Sentence on the noise.
+/// Sizes of the white heading noise and of the largest correlated noise, and whether they explain the remaining error.
 fn noise(document: &TraceDocument) -> String {
     let all = &document.trace.noise;
     let sizes = || all.iter().map(|noise_entry| noise_entry.heading_sd_deg);
@@ -186,7 +186,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     Page::new(page.render(), page.figures)
 }
 
-/// Figures by their places in the template.
+/// Figures of a trace under the names of their places in the template.
 fn placed(
     document: &TraceDocument,
     curves: &TraceCurves,

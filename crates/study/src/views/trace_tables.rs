@@ -112,7 +112,7 @@ pub fn restarted_heading_error(errors: &ErrorsEntry, window_s: f64) -> Option<f6
     *errors.horizon_rmse_deg.get(&format!("{window_s:.0}"))?
 }
 
-/// Interval as text, whatever its size.
+/// Interval as text, with three significant digits if both ends are below 10⁻³.
 fn interval(ends: Option<[f64; 2]>) -> String {
     match ends {
         Some([lo, hi]) if lo.abs().max(hi.abs()) < 1e-3 => format!("[{}, {}]", significant(lo, 3), significant(hi, 3)),

@@ -1,4 +1,4 @@
-//! Prediction: ships sampled from models, steered through manoeuvres and compared with records.
+//! Prediction: ships drawn from models, steered through manoeuvres and compared with records.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -239,8 +239,8 @@ fn next_trial(analysis: &Analysis, trials: &[Trial], held_out: &[Trial]) -> Stri
 ///
 /// Fails with the name of an unknown effect.
 pub fn settings(request: &TraceRequest) -> Result<Settings, Failure> {
-    let hulls = !request.without_hull;
-    Ok(Settings { rule: request.rule, selection: request.selection()?, hulls, ..Settings::default() })
+    let fits_hulls = !request.without_hull;
+    Ok(Settings { rule: request.rule, selection: request.selection()?, fits_hulls, ..Settings::default() })
 }
 
 /// Records of a request without the withheld channels.

@@ -73,7 +73,7 @@ fn truth(desk: &Desk) {
     hull.particulars = keyed_particulars(&at);
     hull.coefficients.iter_mut().zip(values(&at).1).for_each(|(own, value)| own.value = value);
     hull.covariance.iter_mut().flatten().for_each(|entry| *entry = 0.0);
-    hull.moment.deviation_rudder_rad = 0.0;
+    hull.model_error_moment.deviation_rudder_rad = 0.0;
     ship["hulls"] = json!([hull]);
     desk.file("truth.json", document.to_string());
 }

@@ -49,7 +49,8 @@ pub(super) fn maximum_likelihood_level(
     golden_section_minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
 }
 
-/// Deviance −2 log L up to a constant, with σ² at its estimate.
+/// Deviance −2 log L = n ln(s²/n + σ₀²) + log det S, up to a constant: s² is the whitened residual sum of squares
+/// `square`, n the number of rows without those of the initial state, and σ₀ [`MIN_HEADING_SD_RAD`].
 pub(super) fn deviance(square: f64, filter: &MomentFilter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
     n * (square / n + MIN_HEADING_SD_RAD * MIN_HEADING_SD_RAD).ln() + filter.log_determinant()
@@ -115,7 +116,7 @@ impl CurveEquations {
         Some(Self { columns, inverse })
     }
 
-    /// Coefficients, and the residual sum of squares.
+    /// Least-squares coefficients of the curve for a `whitened` heading, and the residual sum of squares.
     fn solve(&self, whitened: &[f64]) -> (DVector<f64>, f64) {
         let side = DVector::from_iterator(COEFFICIENTS, self.columns.iter().map(|column| dot(column, whitened)));
         let coefficients = &self.inverse * &side;

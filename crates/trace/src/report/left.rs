@@ -6,7 +6,7 @@ use ship::angle::to_deg;
 
 use super::TraceParts;
 use crate::model::TermName;
-use crate::residual_analysis::sums_of_squares;
+use crate::residual_analysis::heading_error_squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {
@@ -14,8 +14,8 @@ impl TraceParts<'_> {
     /// there is none.
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
-        let rudder_deg = to_deg(self.location.moment(self.rudder_noises)?.rudder);
-        let [_, after] = sums_of_squares(self.identification);
+        let rudder_deg = to_deg(self.location.unexplained_random_moment(self.rudder_noises)?.rudder);
+        let [_, after] = heading_error_squares(self.identification);
         let rows = || self.identification.iter().map(|comparison| comparison.after.errors.rows as f64);
         let of_row = self.problem.records.iter().zip(&shapes.heading_sd);
         let noise = of_row.zip(rows()).map(|((record, sd), rows)| sd * sd * record.full_readings as f64 * rows);
@@ -49,7 +49,7 @@ impl TraceParts<'_> {
         shapes.named_shapes(|record| self.span(record)[1]).iter().map(entry).collect()
     }
 
-    /// Start and duration (s) of a record, or of the longest record.
+    /// Start and duration, s, of a record; of the longest record for what acts in all records (`None`).
     fn span(&self, record: Option<usize>) -> [f64; 2] {
         let records = &self.problem.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));

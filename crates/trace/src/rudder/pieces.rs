@@ -19,9 +19,9 @@ const MAX_ROUNDS: usize = 3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RudderPiece {
     /// First row.
-    pub from: usize,
+    pub from_row: usize,
     /// Index after the last row.
-    pub to: usize,
+    pub end_row: usize,
     /// Mean time of the rows, s.
     time: f64,
     /// Angle at that time, rad.
@@ -37,7 +37,7 @@ pub struct RudderPiece {
 impl RudderPiece {
     /// Number of rows.
     pub fn rows(&self) -> usize {
-        self.to - self.from
+        self.end_row - self.from_row
     }
 
     /// Angle at a time, rad.
@@ -45,7 +45,7 @@ impl RudderPiece {
         self.angle + self.rate * (time - self.time)
     }
 
-    /// Least-squares line through some rows, level for a rest.
+    /// Least-squares line through the rows `from` to `to`, the last excluded; of rate 0 for a rest.
     fn fit(time: &[f64], angle: &[f64], from: usize, to: usize, is_stroke: bool) -> Self {
         let rows = (to - from) as f64;
         let mean = |values: &[f64]| values[from..to].iter().sum::<f64>() / rows;
@@ -54,7 +54,7 @@ impl RudderPiece {
         let spread: f64 = pairs().map(|(t, _)| (t - at).powi(2)).sum();
         let product: f64 = pairs().map(|(t, delta)| (t - at) * (delta - level)).sum();
         let rate = if is_stroke { product / spread } else { 0.0 };
-        Self { from, to, time: at, angle: level, rate, spread, is_stroke }
+        Self { from_row: from, end_row: to, time: at, angle: level, rate, spread, is_stroke }
     }
 }
 
@@ -134,7 +134,8 @@ fn pooled(values: &[(f64, f64)], penalty: f64) -> Vec<f64> {
     pooled
 }
 
-/// Pools the levels of rests and the rates of strokes.
+/// Pools levels of rests, and rates of strokes without their signs, that do not differ significantly; `sd` is that of a
+/// reading, rad.
 fn pool_gear(pieces: &mut [RudderPiece], sd: f64, penalty: f64) {
     let weight = 1.0 / (sd * sd);
     let rests: Vec<usize> = (0..pieces.len()).filter(|&k| !pieces[k].is_stroke && pieces[k].rows() > 1).collect();
@@ -152,11 +153,11 @@ fn intersection(time: &[f64], piece: &RudderPiece, next: &RudderPiece) -> usize 
     let bend = piece.rate - next.rate;
     let near = 2 * MAX_SHIFT_ROWS;
     if piece.is_stroke == next.is_stroke || piece.rows() < near || next.rows() < near {
-        return piece.to;
+        return piece.end_row;
     }
-    let end = time[piece.to];
+    let end = time[piece.end_row];
     let row = time.partition_point(|t| *t < end + (next.angle_at(end) - piece.angle_at(end)) / bend);
-    if row.abs_diff(piece.to) <= MAX_SHIFT_ROWS { row } else { piece.to }
+    if row.abs_diff(piece.end_row) <= MAX_SHIFT_ROWS { row } else { piece.end_row }
 }
 
 /// Pieces of a rudder (s, rad) with measurement noise of standard deviation `sd`, rad.
@@ -196,7 +197,7 @@ mod tests {
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
         assert!(distinct.len() < 3, "{distinct:?}");
-        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t)));
+        let path = fitted.iter().flat_map(|p| time[p.from_row..p.end_row].iter().map(|t| p.angle_at(*t)));
         let left = |values: &mut dyn Iterator<Item = f64>| -> f64 {
             values.zip(&clean).map(|(value, clean)| (value - clean).powi(2)).sum::<f64>().sqrt()
         };
@@ -216,7 +217,7 @@ mod tests {
         let angle: Vec<f64> = (0..60).map(|row| if row == 31 { 0.2 } else { 0.1 * f64::from(row / 20) }).collect();
         let fitted = pieces(&time, &angle, 0.003);
         assert!(fitted.iter().all(|piece| !piece.is_stroke), "{fitted:?}");
-        let path = fitted.iter().flat_map(|piece| time[piece.from..piece.to].iter().map(|t| piece.angle_at(*t)));
+        let path = fitted.iter().flat_map(|p| time[p.from_row..p.end_row].iter().map(|t| p.angle_at(*t)));
         assert!(path.zip(&angle).all(|(path, angle)| (path - angle).abs() < 1e-12));
     }
 }

@@ -21,7 +21,7 @@ pub enum ShipSignal {
 }
 
 impl ShipSignal {
-    /// Values of the signal at the rows.
+    /// Signal at every row of a motion: heading and rudder in rad, yaw rate in rad/s, way per m/s of speed in s.
     fn values<'a>(self, motion: &'a PredictedMotion) -> &'a [f64] {
         match self {
             Self::Heading => &motion.heading,
@@ -41,7 +41,7 @@ impl ShipSignal {
         }
     }
 
-    /// Symbols on a page and in a formula.
+    /// Symbol of the signal on a page, and in a formula.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Heading => ["ψ", "psi"],
@@ -341,7 +341,7 @@ impl Shape {
     }
 }
 
-/// δ with the sign of the last change of |δ|.
+/// δ times the sign of the last change of |δ|, + for growth; 0 before the first change.
 fn hysteresis(motion: &PredictedMotion) -> Vec<f64> {
     let mut sign = 0.0;
     let signed = motion.rudder.iter().zip(&motion.rudder_rate).map(|(rudder, rate)| {

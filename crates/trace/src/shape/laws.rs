@@ -27,7 +27,7 @@ pub struct RandomLaw {
 }
 
 impl RandomLaw {
-    /// White noise, plus the waves of the noise law.
+    /// Law of white noise alone, or with the `waves` of the noise law; it has no further parameter.
     fn white(waves: Option<NarrowBand>) -> Self {
         let colour = NoiseColour { correlated: None, waves };
         Self { colour, freedom: 0, size: 0.0 }
@@ -52,7 +52,7 @@ impl RandomLaw {
     }
 }
 
-/// Powers of ten with exponents from `from` to `to`.
+/// Sizes 10^`from` to 10^`to`, each 10^`step` times the one before.
 fn decades(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> + Clone {
     let count = ((to - from) / step).round() as usize;
     (0..=count).map(move |k| 10f64.powf(from + step * k as f64))

@@ -64,7 +64,7 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
     all
 }
 
-/// All shapes of the motion of a ship.
+/// All shapes that depend on the motion of the ship or on her rudder; terms linear in r or δ are those of the base.
 fn state_shapes(unit: f64) -> Vec<Shape> {
     let mut all = Vec::new();
     for signal in [ShipSignal::Heading, ShipSignal::Way, ShipSignal::YawRate, ShipSignal::Rudder] {

@@ -202,7 +202,7 @@ impl<'a> ShapeProblem<'a> {
         Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
     }
 
-    /// Criterion under another law.
+    /// Criterion of the structure without shapes under another law; infinite if its columns are dependent.
     fn criterion_under(&self, law: &RandomLaw) -> f64 {
         let weights = self.point.weights(&law.colour);
         let whitened = WhitenedStructure::new(&self.linearised, &weights, law.freedom);
@@ -227,7 +227,7 @@ impl<'a> ShapeProblem<'a> {
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
         let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
         if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN_NATS {
-            best = Explanation { shapes: Vec::new(), criterion: self.criterion, law: self.law };
+            best = Explanation { shapes: Vec::new(), criterion: self.criterion, law_index: self.law };
             without.clear();
         }
         tried.retain(|other| {
@@ -258,7 +258,7 @@ impl<'a> ShapeProblem<'a> {
     /// Random moment of an explanation; `sd` is the standard deviation of the white noise in units of the white noise
     /// of the records.
     fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
-        let law = &self.laws[best.law];
+        let law = &self.laws[best.law_index];
         let (kind, _) = law.colour.correlated.filter(|_| law.is_moment())?;
         let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
         Some(match kind {

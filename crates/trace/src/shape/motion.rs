@@ -25,7 +25,7 @@ pub struct PredictedMotion<'a> {
     /// Record.
     pub record: &'a PreparedRecord,
     /// Index of the record.
-    pub number: usize,
+    pub record_index: usize,
     /// First-order base: 1/T, 1/s, and K/T, 1/s².
     pub base: [f64; 2],
     /// Predicted heading minus the first heading at every row, rad.
@@ -46,13 +46,13 @@ impl<'a> PredictedMotion<'a> {
     /// at the observed rows: heading (rad) and yaw rate (rad/s) come first.
     pub fn new(
         record: &'a PreparedRecord,
-        number: usize,
+        record_index: usize,
         structure: &Structure,
         theta: &[f64],
         initial: [f64; 2],
         predicted: Option<&[[f64; MAX_STATES]]>,
     ) -> Self {
-        let response = structure.response(Some(number), theta);
+        let response = structure.response(Some(record_index), theta);
         let recorded = record.replay_signals(&response);
         let mut state = vec![0.0; response.dimension()];
         response.initialise(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
@@ -78,7 +78,7 @@ impl<'a> PredictedMotion<'a> {
         }
         Self {
             record,
-            number,
+            record_index,
             base: [theta[0], theta[1]],
             rudder_rate: slopes(&record.time, &rudder),
             transitions: intervals().map(|h| Transition::new(theta[0], h)).collect(),
@@ -125,7 +125,7 @@ impl<'a> PredictedMotion<'a> {
     }
 }
 
-/// Linear interpolation of values at the observed rows.
+/// Value at a row, linear between the `value`s of the observed rows, and constant before the first and after the last.
 fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
     let after = record.observed.partition_point(|&observed| observed < row);
     let last = record.observed.len() - 1;
@@ -140,7 +140,7 @@ fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f6
     value(after - 1) * (1.0 - share) + value(after) * share
 }
 
-/// Running median.
+/// Running median over [`MEDIAN_ROWS`] rows; at the ends the first and the last value are repeated.
 fn medians(values: &[f64]) -> Vec<f64> {
     let half = MEDIAN_ROWS / 2;
     let at = |row: usize| {
@@ -152,7 +152,7 @@ fn medians(values: &[f64]) -> Vec<f64> {
     (0..values.len()).map(at).collect()
 }
 
-/// Central differences of a signal.
+/// Derivative of a signal: central differences, one-sided at both ends.
 fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let at = |row: usize| {

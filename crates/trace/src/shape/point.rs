@@ -55,7 +55,7 @@ impl<'a> StructurePoint<'a> {
         (0..self.problem.records.len()).map(motion).collect()
     }
 
-    /// Number of fitted parameters of the base, and of the terms.
+    /// Number of fitted entries of θ that belong to the base, and to the terms.
     fn counts(&self) -> [usize; 2] {
         let base = self.fit.structure.base_count();
         let fitted = self.fit.structure.fitted_indices();

@@ -49,7 +49,7 @@ pub struct Explanation {
     /// Criterion −2 log p + penalties.
     pub criterion: f64,
     /// Index of the random law.
-    pub law: usize,
+    pub law_index: usize,
 }
 
 /// Search for the shapes and the random law that explain a residual best.
@@ -72,7 +72,7 @@ const MIN_RMS: f64 = 1e-12;
 impl ShapeSearch<'_> {
     /// Candidate in all records, or in one; `None` if its moment is zero there.
     fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<Candidate> {
-        let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.number));
+        let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.record_index));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
             acting().map(|motion| (motion, shape.moments(motion))).collect();
         let column = |k: usize| -> Option<HeadingColumn> {
@@ -81,7 +81,7 @@ impl ShapeSearch<'_> {
             let size = (square / rows).sqrt();
             let response = |(motion, moments): &(&PredictedMotion, Vec<Vec<f64>>)| {
                 let moment: Vec<f64> = moments[k].iter().map(|m| m / size).collect();
-                (motion.number, motion.heading_response(&moment))
+                (motion.record_index, motion.heading_response(&moment))
             };
             (size.is_finite() && size > MIN_RMS).then(|| moments.iter().map(response).collect())
         };
@@ -111,14 +111,14 @@ impl ShapeSearch<'_> {
         for motion in self.motions {
             let of_record = all(motion);
             for (shape, places) in of_record.iter().filter(|(shape, _)| shape.is_time_dependent()) {
-                requested.push((*shape, Some(motion.number), penalty(shape, *places, &of_record)));
+                requested.push((*shape, Some(motion.record_index), penalty(shape, *places, &of_record)));
             }
         }
         let candidate = |(shape, record, penalty)| self.candidate(shape, record, penalty).map(Arc::new);
         requested.into_par_iter().filter_map(candidate).collect()
     }
 
-    /// Columns of candidates, whitened under a law.
+    /// Columns of each candidate, whitened record by record under the law of index `law`.
     fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<HeadingColumn>> {
         let mut all: Vec<Vec<HeadingColumn>> = candidates.iter().map(|candidate| candidate.columns.clone()).collect();
         let columns = || all.iter().flatten().flatten();
@@ -132,7 +132,7 @@ impl ShapeSearch<'_> {
         all
     }
 
-    /// Structures with shapes appended, under every law.
+    /// Structure with shapes appended under every law; `None` where its columns are dependent.
     fn extended(&self, shapes: &[Arc<Candidate>]) -> Vec<Option<WhitenedStructure>> {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
         let extend = |(law, structure): (usize, &Option<WhitenedStructure>)| {
@@ -226,7 +226,7 @@ impl ShapeSearch<'_> {
         let library = self.library(unit);
         let (criterion, law) = best_law(self.structure).unwrap_or(NONE);
         let laws = screening_laws(self.laws, law);
-        let mut current = Explanation { shapes: Vec::new(), criterion, law };
+        let mut current = Explanation { shapes: Vec::new(), criterion, law_index: law };
         let mut all = vec![current.clone()];
         let mut products = self.products(&laws, &library);
         for _ in 0..MAX_SHAPES {
@@ -234,9 +234,9 @@ impl ShapeSearch<'_> {
             let criteria = self.scan(&current.shapes, &structures, &laws, &library, &mut products);
             let penalty: f64 = current.shapes.iter().map(|shape| shape.penalty).sum();
             let with = |shape: Arc<Candidate>| {
-                let (criterion, law) = self.best_law(&structures, &[&shape]);
+                let (criterion, law_index) = self.best_law(&structures, &[&shape]);
                 let shapes = [current.shapes.as_slice(), &[shape]].concat();
-                Explanation { shapes, criterion: criterion + penalty, law }
+                Explanation { shapes, criterion: criterion + penalty, law_index }
             };
             let mut next: Vec<Explanation> = self.finalists(&criteria, &library).into_iter().map(with).collect();
             next.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
@@ -264,7 +264,7 @@ impl ShapeSearch<'_> {
         }
     }
 
-    /// Explanation without one shape, under the best law.
+    /// Explanation without the shape at `place`, under the law that is then best.
     fn without(&self, all: &Explanation, place: usize) -> Explanation {
         let mut shapes = all.shapes.clone();
         shapes.remove(place);
@@ -274,17 +274,17 @@ impl ShapeSearch<'_> {
     /// Explanation by some shapes under their best law.
     fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
         let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
-        let (criterion, law) =
+        let (criterion, law_index) =
             if all.is_empty() { best_law(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
-        Explanation { shapes, criterion, law }
+        Explanation { shapes, criterion, law_index }
     }
 
     /// Explanation with the continuous parameters refined by coordinate search under its law, then under its best law;
     /// `None` if no parameter moves.
     fn refined(&self, from: &Explanation) -> Option<Explanation> {
-        let structure = self.structure[from.law].as_ref()?;
+        let structure = self.structure[from.law_index].as_ref()?;
         let mut shapes = from.shapes.clone();
-        let white = |shape: &Candidate| self.white(from.law, &[shape]).concat();
+        let white = |shape: &Candidate| self.white(from.law_index, &[shape]).concat();
         let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|shape| white(shape)).collect();
         let mut lowest = structure.criterion_with(&columns.concat());
         let mut has_moved = false;
@@ -315,7 +315,7 @@ impl ShapeSearch<'_> {
     /// Whitened structure with the shapes of an explanation appended, under its law.
     pub fn with_shapes(&self, all: &Explanation) -> Option<WhitenedStructure> {
         let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
-        self.structure[all.law].as_ref()?.extended(&self.white(all.law, &shapes).concat())
+        self.structure[all.law_index].as_ref()?.extended(&self.white(all.law_index, &shapes).concat())
     }
 }
 

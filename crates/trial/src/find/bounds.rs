@@ -126,10 +126,10 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
         before < after && before >= MIN_HOLD_ANGLE_SHARE * hold.level.abs()
     };
     local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
-    if let ([_], Some(row)) = (&local[..], single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise)) {
+    if let ([_], Some(row)) = (&local[..], single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise_sd)) {
         return window + row;
     }
-    let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise));
+    let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise_sd));
     let Some(movement) = rudder.first() else { return hold.first };
     let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
     let rate = movement.rate.map(f64::abs).or(rudder.rate);
@@ -238,7 +238,7 @@ fn steady_rudder(record: &PreparedLog, pattern: &Pattern, earliest: usize, start
     if (level - amidships).abs() > AMIDSHIPS * largest {
         return None;
     }
-    let tolerance = (STEADY_RUDDER * largest).max(3.0 * record.rudder.noise);
+    let tolerance = (STEADY_RUDDER * largest).max(3.0 * record.rudder.noise_sd);
     let is_steady = |row: &usize| {
         let gap = time[row + 1] - time[*row] > GAP_STEPS * record.rudder.step;
         (angle[*row] - level).abs() <= tolerance && !gap

@@ -73,7 +73,7 @@ pub(crate) struct RudderHolds {
     /// Rudder angle without spikes of one row, rad.
     pub angle: Vec<f64>,
     /// Standard deviation of the rudder noise, rad.
-    pub noise: f64,
+    pub noise_sd: f64,
     /// Half-width of the narrowest band of a hold, rad.
     pub floor: f64,
     /// Usual time between rows, s; 0 for less than two rows.
@@ -93,13 +93,12 @@ impl RudderHolds {
         let step = finite_median(time.windows(2).map(|pair| pair[1] - pair[0]));
         // Second differences respond to noise and not to steady movement; for white noise their variance is six times
         // as large.
-        let noise =
+        let noise_sd =
             1.4826 / 6.0_f64.sqrt() * finite_median(rudder.windows(3).map(|x| (x[0] - 2.0 * x[1] + x[2]).abs()));
-        let quantum = smallest_step(rudder);
-        let floor = (3.0 * noise).max(1.1 * quantum).clamp(MIN_BAND, MAX_BAND);
+        let floor = (3.0 * noise_sd).max(1.1 * smallest_step(rudder)).clamp(MIN_BAND, MAX_BAND);
         let median = finite_median(angle.iter().copied());
         let neutral = if median.abs() <= MAX_NEUTRAL { median } else { 0.0 };
-        let mut rudder = Self { angle, noise, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
+        let mut rudder = Self { angle, noise_sd, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
         rudder.holds = rudder.cut(time);
         rudder.merged = rudder.merged();
         rudder
@@ -187,7 +186,7 @@ impl RudderHolds {
         let mut off: Vec<f64> = thinned(values).iter().map(|x| (x - level).abs()).collect();
         off.sort_unstable_by(f64::total_cmp);
         let scatter = 1.3 * off[(off.len() - 1) * 9 / 10];
-        let reach = scatter.max(2.5 * self.noise).max(0.01 * level.abs()).max(RESOLUTION).min(band);
+        let reach = scatter.max(2.5 * self.noise_sd).max(0.01 * level.abs()).max(RESOLUTION).min(band);
         Some(level - reach..=level + reach)
     }
 }

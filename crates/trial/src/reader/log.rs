@@ -356,7 +356,7 @@ pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, Read
 /// too long.
 ///
 /// Fails as [`read_with`] does, except for faults of the file system.
-pub fn read_from(
+pub fn read_from_reader(
     path: &Path,
     input: impl Read,
     size: Option<u64>,

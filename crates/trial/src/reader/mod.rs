@@ -39,7 +39,7 @@ pub use error::{Problem, ReadError};
 pub use inspection::{ChannelInspection, ChannelRelation};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD_FILE};
 pub use lines::MAX_LINE_BYTES;
-pub use log::{ReadRecord, read, read_from, read_with};
+pub use log::{ReadRecord, read, read_from_reader, read_with};
 
 pub use source::{ChannelReadings, Log};
 

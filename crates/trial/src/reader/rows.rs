@@ -20,13 +20,13 @@ use crate::wording::shortened;
 #[derive(Debug, Default)]
 pub(super) struct Counts {
     pub rows: usize,
-    pub no_time: usize,
-    /// Number of rows with neither rudder nor heading nor yaw rate.
-    pub nothing: usize,
-    pub repeated: usize,
+    pub rows_without_time: usize,
+    /// Rows with neither rudder nor heading nor yaw rate.
+    pub empty_rows: usize,
+    pub repeated_rows: usize,
     /// Times out of order with their neighbours.
-    pub astray: Vec<f64>,
-    pub short: usize,
+    pub stray_times: Vec<f64>,
+    pub short_rows: usize,
     pub decimal_commas: usize,
 }
 
@@ -40,7 +40,7 @@ struct Before {
     /// `true` if the last row was kept.
     kept: bool,
     /// Line and time of a row omitted because its time is before the last time.
-    astray: Option<(usize, f64)>,
+    stray: Option<(usize, f64)>,
 }
 
 /// Rows kept so far.
@@ -67,7 +67,7 @@ pub(super) struct Rows<'a> {
     before: Before,
     last_heading: Option<f64>,
     /// Number of rows of the part with time and one of the wanted channels.
-    pub(super) usable: usize,
+    pub(super) usable_rows: usize,
     /// First and last time in the file.
     pub(super) span: Option<(f64, f64)>,
     pub(super) counts: Counts,
@@ -101,7 +101,7 @@ impl<'a> Rows<'a> {
             row: vec![f64::NAN; layout.columns.len()],
             before: Before::default(),
             last_heading: None,
-            usable: 0,
+            usable_rows: 0,
             span: None,
             counts: Counts::default(),
             layout,
@@ -153,7 +153,7 @@ impl<'a> Rows<'a> {
             (None, None) => f64::NAN,
         };
         if time.is_nan() {
-            self.counts.no_time += 1;
+            self.counts.rows_without_time += 1;
             return Ok(());
         }
         self.span = Some((self.span.map_or(time, |(first, _)| first), time));
@@ -165,12 +165,12 @@ impl<'a> Rows<'a> {
             self.unwrap(place);
         }
         if self.wanted.iter().all(|&place| self.row[place].is_nan()) {
-            self.counts.nothing += 1;
+            self.counts.empty_rows += 1;
             return Ok(());
         }
-        self.usable += 1;
+        self.usable_rows += 1;
         // Rows may share a stamp: they are thinned once their instants are known.
-        if self.stamps.is_some() || (self.usable - 1).is_multiple_of(self.every) {
+        if self.stamps.is_some() || (self.usable_rows - 1).is_multiple_of(self.every) {
             self.before.kept = true;
             self.time.push(time);
             let columns = self.layout.columns.iter_mut().zip(&self.row);
@@ -211,7 +211,7 @@ impl<'a> Rows<'a> {
         if surplus || (cells < expected && self.separator == Separator::Blank) {
             return Err(Problem::Cells { line: number, cells, expected });
         }
-        self.counts.short += usize::from(cells < expected);
+        self.counts.short_rows += usize::from(cells < expected);
         let checked = self.sidecar.is_checked();
         for (place, column) in self.layout.columns[..expected].iter_mut().enumerate() {
             let text = self.cells.get(place).map_or("", |range| &line[range.clone()]);
@@ -284,32 +284,32 @@ impl<'a> Rows<'a> {
             return Ok(true);
         };
         if time < *last {
-            if let Some((line, time)) = self.before.astray {
+            if let Some((line, time)) = self.before.stray {
                 return Err(Problem::TimeBackwards { line, before: *last, time });
             }
             if self.before.earlier.is_none_or(|earlier| time <= earlier) {
-                self.counts.astray.push(time);
-                self.before.astray = Some((number, time));
+                self.counts.stray_times.push(time);
+                self.before.stray = Some((number, time));
                 return Ok(false);
             }
             // The row follows the last but one: the time of the last row was too late.
-            self.counts.astray.push(*last);
+            self.counts.stray_times.push(*last);
             if self.before.kept {
                 self.time.pop();
                 self.layout.columns.iter_mut().for_each(|column| column.values.truncate(self.time.len()));
-                self.usable -= 1;
+                self.usable_rows -= 1;
             }
         } else if time == *last && !may_share {
             let same = row.iter().zip(&self.row).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
             if !same {
                 return Err(Problem::TimeRepeats { line: number, time });
             }
-            self.counts.repeated += 1;
+            self.counts.repeated_rows += 1;
             return Ok(false);
         } else {
             self.before.earlier = Some(*last);
         }
-        self.before.astray = None;
+        self.before.stray = None;
         *last = time;
         row.copy_from_slice(&self.row);
         Ok(true)

@@ -157,10 +157,10 @@ impl Rows<'_> {
         let (counts, layout) = (&self.counts, &self.layout);
         let all_missing =
             |place: usize, quantity| Err(Problem::AllMissing { column: layout.columns[place].name.clone(), quantity });
-        if let Some(place) = self.time_place.filter(|_| counts.no_time == counts.rows) {
+        if let Some(place) = self.time_place.filter(|_| counts.rows_without_time == counts.rows) {
             return all_missing(place, "time");
         }
-        if self.usable == 0 && counts.nothing == 0 {
+        if self.usable_rows == 0 && counts.empty_rows == 0 {
             let (&from_s, &until_s) = (self.part.start(), self.part.end());
             let (first_s, last_s) = self.span.expect("some row has a time, or all_missing had returned");
             return Err(Problem::EmptyPart { from_s, until_s, first_s, last_s });
@@ -184,14 +184,14 @@ impl Rows<'_> {
         let mut count = |number: usize, code: WarningCode, text: &str| {
             warnings.extend((number > 0).then(|| code.warning(format!("{} {text}", counted(number, "row")))));
         };
-        count(counts.no_time, WarningCode::LeftOut, "without time left out");
-        count(counts.nothing, WarningCode::LeftOut, "with neither rudder nor heading nor yaw rate left out");
-        count(counts.repeated, WarningCode::LeftOut, "left out as exact copies of the row before");
+        count(counts.rows_without_time, WarningCode::LeftOut, "without time left out");
+        count(counts.empty_rows, WarningCode::LeftOut, "with neither rudder nor heading nor yaw rate left out");
+        count(counts.repeated_rows, WarningCode::LeftOut, "left out as exact copies of the row before");
         let short = "with fewer cells than the header; their last columns are taken as missing";
-        count(counts.short, WarningCode::MissingValues, short);
-        let first = rounded_to_thousandth(counts.astray.first().copied().unwrap_or_default());
+        count(counts.short_rows, WarningCode::MissingValues, short);
+        let first = rounded_to_thousandth(counts.stray_times.first().copied().unwrap_or_default());
         let astray = format!("left out, because the time does not fit its neighbours; the first is at {first} s");
-        count(counts.astray.len(), WarningCode::LeftOut, &astray);
+        count(counts.stray_times.len(), WarningCode::LeftOut, &astray);
         if counts.decimal_commas > 0 {
             let text = format!("{} read with a decimal comma", counted(counts.decimal_commas, "number"));
             warnings.push(WarningCode::Notation.warning(text));

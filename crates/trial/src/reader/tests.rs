@@ -47,11 +47,11 @@ pub(super) fn simple() -> String {
 
 pub(super) fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<ReadRecord, ReadError> {
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
-    read_from(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
+    read_from_reader(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
 }
 
 pub(super) fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
-    read_from(Path::new("run.csv"), bytes.as_ref(), None, None)
+    read_from_reader(Path::new("run.csv"), bytes.as_ref(), None, None)
 }
 
 /// Problem of a table, after a check that its message names the file and contains `parts`.
@@ -300,7 +300,7 @@ impl Read for Endless {
 fn a_hundred_million_rows_are_refused_before_they_are_read() {
     let size = 27 + 100_000_000 * 20;
     let mut endless = Endless { row: 0, line: Vec::new(), consumed: 0, total: 0 };
-    let result = read_from(Path::new("run.csv"), &mut endless, Some(size), None);
+    let result = read_from_reader(Path::new("run.csv"), &mut endless, Some(size), None);
     let refusal = complaint(result, &["more than 16666666 rows", "about 100000000", "every = 7", "from-s"]);
     assert!(matches!(
         refusal,

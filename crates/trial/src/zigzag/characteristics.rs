@@ -105,7 +105,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         complete_cycle_time: from_first.then(|| since_first(back_on_base(2))).flatten(),
         largest_yaw_rate: heading.largest_rate(executes[0].time.value, end),
         rudder_rate: rudder.rate,
-        heading_noise: heading.noise,
+        heading_noise_sd: heading.noise_sd,
         executes,
     })
 }
@@ -193,7 +193,7 @@ fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
 /// the rate exceeds `precise`.
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
     let fit = LocalPolynomial::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
-    (fit.slope_gain(time) * heading.noise.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
+    (fit.slope_gain(time) * heading.noise_sd.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
 }
 
 /// Base course of a record with its first execute.
@@ -204,11 +204,11 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
     let rows = heading.rows(from, first.start.value);
     let n = rows.len();
     if n < MIN_APPROACH_ROWS {
-        let heading = Quantity::new(heading.origin + heading.relative[0], heading.noise);
+        let heading = Quantity::new(heading.origin + heading.relative[0], heading.noise_sd);
         return BaseCourse { heading, source: BaseCourseSource::FirstHeading };
     }
     let mean = heading.relative[rows].iter().sum::<f64>() / n as f64;
-    let sd = heading.noise.map(|sd| sd / (n as f64).sqrt());
+    let sd = heading.noise_sd.map(|sd| sd / (n as f64).sqrt());
     BaseCourse { heading: Quantity::new(heading.origin + mean, sd), source: BaseCourseSource::Approach }
 }
 

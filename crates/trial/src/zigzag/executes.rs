@@ -50,7 +50,7 @@ pub struct RudderMovements<'a> {
     angle: &'a [f64],
     holds: &'a [Hold],
     /// Standard deviation of the rudder noise, rad; at least the rounding error of the channel.
-    noise: f64,
+    noise_sd: f64,
     /// Rate of the rudder, rad/s: median over the reversals that the sampling resolves, a lower bound if a ramp is
     /// about as long as a sampling interval, `None` if it is shorter.
     pub rate: Option<f64>,
@@ -71,7 +71,7 @@ impl<'a> RudderMovements<'a> {
             median(&mut steps).map_or(0.0, |step| 1.4826 * step / std::f64::consts::SQRT_2)
         });
         let noise = noise.max(quantum(angle) / 12.0_f64.sqrt());
-        let mut rudder = Self { time, angle, holds, noise, rate: None, rate_is_bound: false };
+        let mut rudder = Self { time, angle, holds, noise_sd: noise, rate: None, rate_is_bound: false };
         let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
         let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
         // If most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
@@ -92,7 +92,7 @@ impl<'a> RudderMovements<'a> {
         let way = to.level - from.level;
         let is_under_way = |row: usize| {
             let step = (self.angle[row] - self.angle[row - 1]) * way.signum();
-            step > (MIN_MOVING.0 * self.noise).max(MIN_MOVING.1 * way.abs())
+            step > (MIN_MOVING.0 * self.noise_sd).max(MIN_MOVING.1 * way.abs())
         };
         let mut row = foot.min(from.last);
         while row > from.first && is_under_way(row) {
@@ -114,7 +114,7 @@ impl<'a> RudderMovements<'a> {
         let steps = (self.time[to.first] - self.time[0]) / to.first as f64;
         let rate = self.rate.unwrap_or(2.0 * to.level.abs() / steps);
         // Minimum length at which a ramp exceeds the noise.
-        let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise) / rate;
+        let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise_sd) / rate;
         let mut row = to.first;
         while row > 0 {
             let earlier = row_before(self.time, row, look_back).min(row - 1);
@@ -128,7 +128,7 @@ impl<'a> RudderMovements<'a> {
         // The lookback ends a little after the true foot. The angle just before it is used, not the mean of the
         // steering before.
         let clear = row_before(self.time, row, 0.3 * look_back);
-        let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
+        let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise_sd);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
         let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
         Some(self.movement(Level::from_rows(&mut steady)?, to))
@@ -159,7 +159,7 @@ impl<'a> RudderMovements<'a> {
                 let way = (self.angle[row] - before).abs();
                 match common {
                     Some(rate) => {
-                        let noise = 1.0_f64.hypot(level.gain) * self.noise / rate;
+                        let noise = 1.0_f64.hypot(level.gain) * self.noise_sd / rate;
                         let speed = if self.rate_is_bound { way / rate / 12.0_f64.sqrt() } else { 0.0 };
                         (Quantity::new(self.time[row] - way / rate, Some(noise.hypot(speed))), None)
                     }
@@ -202,7 +202,7 @@ impl<'a> RudderMovements<'a> {
         }
         let squares: f64 = ramp.iter().map(off).map(|(t, angle)| (angle - ramp_rate * t).powi(2)).sum();
         let scatter = if ramp.len() > 2 { (squares / (n - 2.0)).sqrt() } else { 0.0 };
-        let noise = self.noise.max(scatter);
+        let noise = self.noise_sd.max(scatter);
         let common =
             self.rate.map(|rate| direction * rate).filter(|rate| (rate - ramp_rate).abs() <= 3.0 * noise / tt.sqrt());
         let rate = common.unwrap_or(ramp_rate);

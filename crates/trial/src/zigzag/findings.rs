@@ -190,7 +190,7 @@ pub struct ZigZag {
     pub rudder_rate: Option<f64>,
     /// Standard deviation of the heading noise, from which the uncertainties follow, rad: declared, or a robust
     /// estimate from the record ([`super::noise_sd`]).
-    pub heading_noise: Option<f64>,
+    pub heading_noise_sd: Option<f64>,
 }
 
 /// Maximum yaw rate at the first execute after a straight approach, as a share of the maximum of the record.

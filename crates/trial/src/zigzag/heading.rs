@@ -60,7 +60,7 @@ pub(super) struct Heading {
     /// Heading at a relative heading of zero, rad.
     pub origin: f64,
     /// Standard deviation of the noise, rad.
-    pub noise: Option<f64>,
+    pub noise_sd: Option<f64>,
     /// Half-width of local fits for values, s.
     pub half_width: f64,
     /// Maximum step between headings around a peak, s.
@@ -91,7 +91,7 @@ impl Heading {
         let narrowest = 2.0 * step;
         let half_width = best.clamp(narrowest, narrowest.max(MAX_HALF_WIDTH * period));
         let max_step = (2.0 * half_width).max(4.0 * step);
-        Some(Self { time, relative, origin, noise, half_width, max_step })
+        Some(Self { time, relative, origin, noise_sd: noise, half_width, max_step })
     }
 
     /// Half-width of local fits for slopes, s.
@@ -111,12 +111,12 @@ impl Heading {
 
     /// Heading at time `t` relative to the origin.
     pub fn heading_at(&self, t: f64) -> Option<Quantity> {
-        Some(self.local(t, self.half_width)?.value_at(t, self.noise))
+        Some(self.local(t, self.half_width)?.value_at(t, self.noise_sd))
     }
 
     /// Yaw rate at time `t`, rad/s.
     pub fn rate_at(&self, t: f64) -> Option<Quantity> {
-        Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise))
+        Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise_sd))
     }
 
     /// Maximum |yaw rate| between two times, at the rows whose fit has samples on both sides.
@@ -154,7 +154,7 @@ impl Heading {
         let t = fit.stationary_point()?;
         let (end, reach) = (to.min(self.time[self.time.len() - 1]), t + self.half_width);
         let is_seen = side * fit.curvature(t) < 0.0 && t > from && reach <= end && !self.has_a_gap(from, reach);
-        is_seen.then(|| (fit.time_of_peak(t, self.noise), fit.value_at(t, self.noise)))
+        is_seen.then(|| (fit.time_of_peak(t, self.noise_sd), fit.value_at(t, self.noise_sd)))
     }
 
     /// `true` if the headings have a gap between two times, longer than a local fit and the usual steps.
@@ -178,7 +178,7 @@ impl Heading {
             t = self.local(t, self.half_width)?.crossing(level)?;
         }
         let fit = self.local(t, self.half_width)?;
-        (side * fit.slope(t) > 0.0).then(|| fit.time_of_crossing(t, self.noise))
+        (side * fit.slope(t) > 0.0).then(|| fit.time_of_crossing(t, self.noise_sd))
     }
 
     /// Rows between two times, both included.

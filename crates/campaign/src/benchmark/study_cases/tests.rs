@@ -92,7 +92,7 @@ fn scores_are_what_the_models_are_worth() {
                 assert!(of(STRAIGHT_ON).is_none(), "it has no K and no T");
                 let slow = of("slow").expect("it answers");
                 assert!((median("slow") - 20.0).abs() < 1e-9, "T is 24 s where it is 20 s");
-                let holds = slow.holds.expect("intervals").map(|share| (share.count, share.cases));
+                let holds = slow.coverage.expect("intervals").map(|share| (share.count, share.cases));
                 assert_eq!(holds, [(2, 2), (0, 2)], "K is inside, 20 s is not within 24 s ± 10 %");
             }
             _ => assert!(median(STRAIGHT_ON) > 2.0 * median("slow"), "{:?}", board.task),

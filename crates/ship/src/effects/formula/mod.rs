@@ -310,7 +310,7 @@ impl<R: Real> EffectEquations<R> for Formula {
 
     #[inline]
     fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
-        if !self.acts_on.rudder {
+        if !self.acts_on.transforms_rudder {
             return rudder;
         }
         self.program.value(p, |_| rudder)
@@ -318,7 +318,7 @@ impl<R: Real> EffectEquations<R> for Formula {
 
     #[inline]
     fn yaw_acceleration(&self, p: &[R], z: &[R], now: &OperatingPoint<R>) -> R {
-        if !self.acts_on.moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
+        if !self.acts_on.adds_moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }
         self.program.value(p, |signal| signal.at(now, z, &self.of_record))

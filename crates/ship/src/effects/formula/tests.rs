@@ -27,7 +27,7 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
         let parameters = formula.parameters();
         let keys: Vec<&str> = parameters.iter().map(|p| p.key).collect();
         assert_eq!(formula.program.constants, keys, "{name}");
-        assert!(!formula.acts_on.rudder || formula.program.signals == [FormulaSignal::Rudder], "{name}");
+        assert!(!formula.acts_on.transforms_rudder || formula.program.signals == [FormulaSignal::Rudder], "{name}");
         let (second, metre): (f64, f64) = (2.0, 3.0);
         for point in SignalPoint::all(&SignalScales::ones()) {
             let value = |point: SignalPoint, factor: &dyn Fn(&Parameter) -> f64| {
@@ -42,7 +42,7 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
                 let [seconds, metres] = p.dimension();
                 second.powi(seconds) * metre.powi(metres)
             });
-            let of_units = if formula.acts_on.rudder { 1.0 } else { second * second };
+            let of_units = if formula.acts_on.transforms_rudder { 1.0 } else { second * second };
             assert!(is_near(plain, in_units * of_units), "{name} in other units: {plain} {in_units}");
         }
     }

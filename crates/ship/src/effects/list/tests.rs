@@ -82,7 +82,7 @@ fn rows_are_their_equations_to_the_last_bit() {
                 _ => now.rudder.value,
             };
             let p = &p[..parameters.len()];
-            let (value, expected) = match row.acts_on.rudder {
+            let (value, expected) = match row.acts_on.transforms_rudder {
                 true => (acts.rudder(p, &[], now.rudder), by_hand(id, form, p, &now)),
                 false => (acts.yaw_acceleration(p, &[], &now), by_hand(id, form, p, &now)),
             };

@@ -17,7 +17,8 @@ use crate::names::{self, ColumnMeaning};
 use crate::reader::error::Problem;
 use crate::reader::{MAX_CELLS, RECORD_FILE};
 use variable::{
-    ByteCursor, CELL_ARRAY, COMPRESSED, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size,
+    ByteCursor, CELL_ARRAY, COMPRESSED, NonColumnVariable, Variable, Variables, class_name, contradiction, damaged,
+    size,
 };
 
 pub use level4::is_level4;
@@ -47,14 +48,14 @@ fn is_numeric(class: u32) -> bool {
 }
 
 /// Variable, or the description of a variable without numbers; `None` for bytes that are not a variable.
-fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVariable>> {
+fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, NonColumnVariable>> {
     let mut scan = ByteCursor { tail: bytes, big_endian };
     let (_, flag_bytes) = scan.element()?;
     let (class, complex) = flags(ByteCursor { tail: flag_bytes, big_endian }.word()?);
     if !is_numeric(class) {
         let name = scan.element().and_then(|_| scan.element()).map(|(_, name)| String::from_utf8_lossy(name));
         let name = name.map_or_else(String::new, |name| name.into_owned());
-        return Some(Err(OtherVariable { name, kind: class_name(class).to_owned() }));
+        return Some(Err(NonColumnVariable { name, kind: class_name(class).to_owned() }));
     }
     let mut sizes = ByteCursor { tail: scan.element()?.1, big_endian };
     let mut dimensions = Vec::new();
@@ -65,7 +66,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, OtherVari
     let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     // MATLAB stores objects in a variable of bytes without a name.
     if name.is_empty() || complex || dimensions.len() != 2 {
-        return Some(Err(OtherVariable { name, kind: sizes }));
+        return Some(Err(NonColumnVariable { name, kind: sizes }));
     }
     let (kind, data) = scan.element()?;
     let [rows, columns] = *dimensions.first_chunk()?;
@@ -135,7 +136,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         ColumnMeaning::Time(_) => Some(ColumnMeaning::Time(None)),
         _ => None,
     };
-    let is_lacking = |cell: &&OtherVariable| {
+    let is_lacking = |cell: &&NonColumnVariable| {
         let wanted = quantity(&cell.name);
         cell.kind == CELL_ARRAY && wanted.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != wanted)
     };
@@ -152,7 +153,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     lengths.dedup();
     let Some(length) = lengths.into_iter().max_by_key(|&rows| worth(rows)) else {
         let sizes = numeric.iter().map(|Variable { name, rows, columns, .. }| format!("{name} ({rows}x{columns})"));
-        let kinds = left_out.iter().map(|OtherVariable { name, kind }| format!("{name} ({kind})"));
+        let kinds = left_out.iter().map(|NonColumnVariable { name, kind }| format!("{name} ({kind})"));
         let (wanted, content) = ("numeric variables of equal length", sizes.chain(kinds).collect());
         return Err(Problem::NoTable { format: "a MATLAB file", wanted, content });
     };

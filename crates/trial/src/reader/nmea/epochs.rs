@@ -44,11 +44,11 @@ pub(super) fn timing_from_stamps(log: &mut NmeaLog) -> Timing {
         drop_rows(instrument);
         spread += usize::from(spread_stamps(&mut instrument.at));
     }
-    let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
+    let neighbours = if log.counts.stray_stamps == 1 { "its" } else { "their" };
     let mut warnings: Vec<Warning> = [
-        (log.counts.strayed, format!("with a stamp far from {neighbours} neighbours")),
+        (log.counts.stray_stamps, format!("with a stamp far from {neighbours} neighbours")),
         (disordered, "with an earlier stamp than the sentence before of the same instrument".to_owned()),
-        (log.counts.unstamped, "without a time stamp".to_owned()),
+        (log.counts.without_stamp, "without a time stamp".to_owned()),
     ]
     .into_iter()
     .filter(|(number, _)| *number > 0)

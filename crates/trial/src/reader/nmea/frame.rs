@@ -31,7 +31,7 @@ pub(super) struct Frame<'a> {
     /// Bytes between the comma after the address and the checksum.
     pub body: &'a [u8],
     /// `true` for a sentence with a checksum.
-    pub summed: bool,
+    pub has_checksum: bool,
 }
 
 /// Maximum length of a line with a sentence, bytes: 82 of the standard, and room for the text of a logger.
@@ -53,7 +53,7 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
         Some(place) if sentence[place] == b'*' => Some(place),
         _ => sentence.iter().position(|&byte| byte == b'*'),
     };
-    let (body, summed) = match star {
+    let (body, has_checksum) = match star {
         Some(star) => {
             let digits = sentence.get(star + 1).zip(sentence.get(star + 2)).map(|(&high, &low)| (hex(high), hex(low)));
             let Some((Some(high), Some(low))) = digits else { return Line::Damaged };
@@ -73,14 +73,14 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
         }
     };
     let Some((address, body)) = body.split_at_checked(5) else {
-        return if summed { Line::Foreign } else { Line::Damaged };
+        return if has_checksum { Line::Foreign } else { Line::Damaged };
     };
     let named = address.iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit());
     match (body.first(), <[u8; 5]>::try_from(address)) {
         (Some(b','), Ok(address)) if named && address[0] != b'P' => {
-            Line::Sentence(Frame { before, address, body: &body[1..], summed })
+            Line::Sentence(Frame { before, address, body: &body[1..], has_checksum })
         }
-        _ if summed || address[0] == b'P' => Line::Foreign,
+        _ if has_checksum || address[0] == b'P' => Line::Foreign,
         _ => Line::Damaged,
     }
 }

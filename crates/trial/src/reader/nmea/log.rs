@@ -29,7 +29,7 @@ pub(super) struct NmeaInstrument {
     /// Number of invalid entries of each quantity.
     pub invalid: [usize; MAX_SLOTS],
     /// `true` once a sentence had a checksum.
-    summed: bool,
+    writes_checksums: bool,
 }
 
 impl NmeaInstrument {
@@ -57,20 +57,22 @@ const MAX_DISORDER_S: f64 = 1.0;
 /// Counts of lines.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counts {
-    pub blank: usize,
+    pub blank_lines: usize,
     /// Lines of text without a sentence.
-    pub text: usize,
+    pub text_lines: usize,
     /// Sentences, read or not.
     pub sentences: usize,
-    pub foreign: usize,
-    pub wrong: usize,
-    pub broken: usize,
+    /// Sentences that are not read.
+    pub foreign_sentences: usize,
+    pub wrong_checksums: usize,
+    /// Sentences cut short, and lines that are not text.
+    pub broken_sentences: usize,
     /// Sentences accepted without a checksum.
-    pub unsummed: usize,
+    pub without_checksum: usize,
     /// Sentences without a stamp in a log with stamps.
-    pub unstamped: usize,
+    pub without_stamp: usize,
     /// Stamps far from their neighbours.
-    pub strayed: usize,
+    pub stray_stamps: usize,
 }
 
 /// Content of a log so far.
@@ -84,7 +86,7 @@ pub(super) struct NmeaLog {
     pub leading: PrefixReader,
     pub stamps: StampConverter,
     /// `true` for a log with stamps before its sentences.
-    pub stamped: bool,
+    pub has_stamps: bool,
     /// Latest stamp and the stamp before it, s, and the number of lines with the latest stamp.
     latest: (f64, f64, usize),
     /// Line and time of the last stamp, if it is before the latest stamp.
@@ -93,20 +95,20 @@ pub(super) struct NmeaLog {
 }
 
 impl NmeaLog {
-    /// Empty log; `stamped` for stamps before the sentences.
-    pub fn new(stamped: bool) -> Self {
-        Self { stamped, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
+    /// Empty log; `has_stamps` for stamps before the sentences.
+    pub fn new(has_stamps: bool) -> Self {
+        Self { has_stamps, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
     }
 
     /// Adds a line.
     pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), Problem> {
         match frame(line) {
             Line::Sentence(frame) => return self.sentence(&frame, number),
-            Line::Foreign => self.counts.foreign += 1,
-            Line::Blank => self.counts.blank += 1,
-            Line::Text => self.counts.text += 1,
-            Line::WrongSum => self.counts.wrong += 1,
-            Line::Damaged => self.counts.broken += 1,
+            Line::Foreign => self.counts.foreign_sentences += 1,
+            Line::Blank => self.counts.blank_lines += 1,
+            Line::Text => self.counts.text_lines += 1,
+            Line::WrongSum => self.counts.wrong_checksums += 1,
+            Line::Damaged => self.counts.broken_sentences += 1,
         }
         Ok(())
     }
@@ -118,10 +120,10 @@ impl NmeaLog {
         };
         let (stamp, source) = if frame.before.is_empty() { (None, 0) } else { self.leading.read(frame.before) };
         let mut at = number as f64;
-        if self.stamped {
+        if self.has_stamps {
             let Some(stamp) = stamp else {
                 self.counts.sentences += 1;
-                self.counts.unstamped += 1;
+                self.counts.without_stamp += 1;
                 return Ok(());
             };
             let fault = |_| Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) };
@@ -142,7 +144,7 @@ impl NmeaLog {
             if self.add(slots, frame, source, at, &row) {
                 self.count(frame);
             } else {
-                self.counts.broken += 1;
+                self.counts.broken_sentences += 1;
             }
         }
         if self.numbers > MAX_CELLS {
@@ -154,7 +156,7 @@ impl NmeaLog {
     /// Counts an accepted sentence.
     fn count(&mut self, frame: &Frame) {
         self.counts.sentences += 1;
-        self.counts.unsummed += usize::from(!frame.summed);
+        self.counts.without_checksum += usize::from(!frame.has_checksum);
     }
 
     /// Adds the readings of a sentence to the table of its instrument.
@@ -177,17 +179,17 @@ impl NmeaLog {
                     at: Vec::new(),
                     columns: vec![Vec::new(); slots.len()],
                     invalid: [0; MAX_SLOTS],
-                    summed: false,
+                    writes_checksums: false,
                 });
                 self.instruments.len() - 1
             }
             None => return true,
         };
         let instrument = &mut self.instruments[number];
-        if instrument.summed && !frame.summed {
+        if instrument.writes_checksums && !frame.has_checksum {
             return false;
         }
-        instrument.summed = frame.summed;
+        instrument.writes_checksums = frame.has_checksum;
         instrument.at.push(at);
         for (column, value) in instrument.columns.iter_mut().zip(row.values) {
             column.push(value);
@@ -215,7 +217,7 @@ impl NmeaLog {
                     *last = f64::NAN;
                 }
             }
-            self.counts.strayed += 1;
+            self.counts.stray_stamps += 1;
             self.latest = (at.max(before), before, 2);
             return Ok(true);
         }
@@ -224,7 +226,7 @@ impl NmeaLog {
             let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.time_of_day_at(at));
             return Err(Problem::ClockBack { line, before: shown(latest), after: shown(after) });
         }
-        self.counts.strayed += 1;
+        self.counts.stray_stamps += 1;
         self.late = Some((number, at));
         Ok(false)
     }

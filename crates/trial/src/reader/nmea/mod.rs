@@ -94,19 +94,19 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
 /// Channels of a log that was read to its end.
 fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, Log), Problem> {
     let counts = log.counts;
-    let written = lines - counts.blank;
-    let damaged = counts.wrong + counts.broken;
+    let Counts { blank_lines, wrong_checksums: wrong, broken_sentences: broken, .. } = counts;
+    let (written, damaged) = (lines - blank_lines, wrong + broken);
     if 2 * damaged > written {
-        return Err(Problem::DamagedLog { lines: written, damaged, wrong: counts.wrong, broken: counts.broken });
+        return Err(Problem::DamagedLog { lines: written, damaged, wrong, broken });
     }
     if log.instruments.is_empty() {
-        return Err(if counts.unstamped > 0 {
+        return Err(if counts.without_stamp > 0 {
             Problem::NoClock { sentences: counts.sentences, clocks: 0 }
         } else {
             Problem::NoReadings { sentences: counts.sentences }
         });
     }
-    let (clock, timing) = if log.stamped { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
+    let (clock, timing) = if log.has_stamps { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
     let mut warnings = count_warnings(&counts, lines);
     warnings.extend(timing);
     let ChosenInstruments { mut series, warnings: choices, .. } = ChosenInstruments::from_instruments(&log.instruments);
@@ -136,17 +136,18 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
 
 /// Warnings of the omitted lines and of sentences without checksum.
 fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
-    let hold = if counts.text == 1 { "holds" } else { "hold" };
+    let Counts { text_lines: text, wrong_checksums: wrong, broken_sentences: broken, .. } = *counts;
+    let hold = if text == 1 { "holds" } else { "hold" };
     let faults = [
-        (counts.wrong, format!("had a wrong checksum and {} left out", is_or_are(counts.wrong))),
-        (counts.broken, format!("{} cut short or not text, and left out", is_or_are(counts.broken))),
-        (counts.text, format!("{hold} no sentence and {} left out", is_or_are(counts.text))),
+        (wrong, format!("had a wrong checksum and {} left out", is_or_are(wrong))),
+        (broken, format!("{} cut short or not text, and left out", is_or_are(broken))),
+        (text, format!("{hold} no sentence and {} left out", is_or_are(text))),
     ];
     let faults = faults.into_iter().filter(|(number, _)| *number > 0);
     let texts = faults.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line")));
     let mut warnings: Vec<Warning> = texts.map(|text| WarningCode::LeftOut.warning(text)).collect();
-    if counts.unsummed > 0 {
-        let number = counts.unsummed;
+    if counts.without_checksum > 0 {
+        let number = counts.without_checksum;
         let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };
         let sentences = counted(number, "sentence");
         let text = format!("{sentences} {have} no checksum; damage to {them} cannot be detected");

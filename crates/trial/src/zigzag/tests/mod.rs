@@ -220,7 +220,7 @@ fn reported_uncertainty_is_the_scatter_over_seeds() {
         ("execute heading", from_deg(10.0), |zigzag| zigzag.executes[1].heading),
         ("rate at execute", from_deg(0.741), |zigzag| zigzag.executes[1].yaw_rate.expect("has headings")),
         ("t_a", 24.09, |zigzag| zigzag.initial_turning_time.expect("has a first execute")),
-        ("heading noise", 0.0, |zigzag| Quantity::new(zigzag.heading_noise.expect("estimated"), Some(0.0))),
+        ("heading noise", 0.0, |zigzag| Quantity::new(zigzag.heading_noise_sd.expect("estimated"), Some(0.0))),
     ];
     for noise_deg in [0.1, 0.5] {
         for (name, truth, pick) in picks {
@@ -243,7 +243,7 @@ fn declared_noise_wins_over_the_estimate() {
     let (time, heading, rudder) = Plant::default().record(300.0, 1.0);
     let noise = Noise { heading: Some(from_deg(0.3)), ..Noise::default() };
     let zigzag = ZigZag::from_trial(&trial(time, heading, rudder).with_noise(noise)).expect("a zig-zag");
-    assert_eq!(zigzag.heading_noise, noise.heading);
+    assert_eq!(zigzag.heading_noise_sd, noise.heading);
     let sd = to_deg(zigzag.overshoots[0].angle.sd.expect("declared"));
     assert!((0.1..0.3).contains(&sd), "{sd}");
 }

@@ -3,7 +3,7 @@
 //!
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 2 (level 4 MAT-files).
 
-use super::variable::{ByteCursor, OtherVariable, Variable, Variables, class_name, contradiction, damaged, size};
+use super::variable::{ByteCursor, NonColumnVariable, Variable, Variables, class_name, contradiction, damaged, size};
 use crate::reader::error::Problem;
 
 /// Maximum length of the name of a variable with its terminator, bytes.
@@ -64,9 +64,9 @@ pub fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
         let VariableHead { kind, class, rows, columns, complex, name } = head;
         match class {
             0 if !complex => numeric.push(Variable::new(name, [rows, columns], kind, data, big_endian)),
-            0 => left_out.push(OtherVariable { name, kind: format!("{rows}x{columns}") }),
+            0 => left_out.push(NonColumnVariable { name, kind: format!("{rows}x{columns}") }),
             // Text is class 4 of level 5, a sparse matrix class 5.
-            _ => left_out.push(OtherVariable { name, kind: class_name(3 + class).to_owned() }),
+            _ => left_out.push(NonColumnVariable { name, kind: class_name(3 + class).to_owned() }),
         }
     }
     Ok((numeric, left_out))

@@ -30,13 +30,13 @@ pub struct Variable {
 }
 
 /// Variable that is not a column, with its kind for messages.
-pub struct OtherVariable {
+pub struct NonColumnVariable {
     pub name: String,
     pub kind: String,
 }
 
 /// Variables of a file that are columns, and all other variables.
-pub type Variables = (Vec<Variable>, Vec<OtherVariable>);
+pub type Variables = (Vec<Variable>, Vec<NonColumnVariable>);
 
 /// Name of a cell array in messages.
 pub const CELL_ARRAY: &str = "a cell array";
