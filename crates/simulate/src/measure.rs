@@ -73,7 +73,8 @@ impl PerfectReadings {
     /// `true` if the records of all keys have the same times and the same rudder.
     pub fn has_one_rudder(&self, sensors: &Sensors) -> bool {
         let is_disturbed = self.rudder_is_read && sensors.rudder_noise > 0.0;
-        !is_disturbed && !(sensors.drop_out.whole_row && sensors.drop_out.can_lose_rows())
+        let loses_rows = sensors.drop_out.whole_row && sensors.drop_out.can_lose_rows();
+        !(is_disturbed || loses_rows)
     }
 
     /// Readings of all instruments in every row; `stamps` in s.

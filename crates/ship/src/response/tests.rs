@@ -122,9 +122,9 @@ fn an_effect_acts_where_it_says() {
         let z = vec![0.15; effect.states()];
         let acts = f64::effect_equations(effect.as_ref());
         let acted_on = EffectTarget {
-            rudder: acts.rudder(&p, &z, 0.2) != 0.2,
-            scale: acts.base_factors(&p, &z, &now) != BaseFactors::unity(),
-            moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
+            transforms_rudder: acts.rudder(&p, &z, 0.2) != 0.2,
+            scales_response: acts.base_factors(&p, &z, &now) != BaseFactors::unity(),
+            adds_moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
         };
         assert_eq!(acted_on, effect.acts_on(), "{} ({})", effect.id(), effect.form());
     }
