@@ -320,8 +320,8 @@ fn weight(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: u
 }
 
 impl RecordAtPoint {
-    /// Contributions of a record at given steering, one for every noise vector, whose filter may use another 1/T than the
-    /// ship. `None` if one is not finite.
+    /// Contributions of a record at given steering, one for every noise vector, whose filter may use another 1/T than
+    /// the ship. `None` if one is not finite.
     pub fn under(
         record: &Record,
         inverse_time: f64,
