@@ -107,6 +107,15 @@ fn methods_take_no_figures_command_line_or_parquet() {
     }
 }
 
+/// With a default feature a crate, and all above it, is compiled once for the workspace and again for a package.
+#[test]
+fn no_crate_has_a_default_feature() {
+    for name in FLOORS {
+        let manifest = read(&root().join("crates").join(name).join("Cargo.toml"));
+        assert!(!manifest.contains("\ndefault = "), "{name} has a default feature; name it where it is needed");
+    }
+}
+
 #[test]
 fn crates_depend_on_those_below_them() {
     let floor = |name: &str| FLOORS.iter().position(|known| *known == name).expect("a floor");

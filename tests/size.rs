@@ -9,16 +9,16 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 69_683,
-    tests: 31_580,
+    code: 69_695,
+    tests: 31_586,
     long_functions: 0,
-    shared_types: 8,
+    shared_types: 7,
     packages: 298,
     tuple_parameters: 0,
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 11_506,
+    largest_crate: 11_496,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.

@@ -69,48 +69,36 @@ impl Whitener {
     /// Whitens columns in place.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         for columns in columns.chunks_mut(COLUMNS) {
-            if let [column] = columns {
-                let readings = column.clone();
-                let (readings, out) = (readings.as_chunks::<1>().0, column.as_chunks_mut::<1>().0);
-                with_states!(self.states, N => run(Whitening::<N, 1, 1, false> {
-                    whiteners: [self],
-                    readings: [readings],
-                    out: [out],
-                }));
-                continue;
-            }
-            // A missing column contains zeros.
-            let mut rows = vec![[0.0; COLUMNS]; self.readings.len()];
-            for (k, column) in columns.iter().enumerate() {
-                rows.iter_mut().zip(column.iter()).for_each(|(row, value)| row[k] = *value);
-            }
-            let mut white = Vec::new();
-            self.apply_to_rows(&rows, &mut white);
-            for (k, column) in columns.iter_mut().enumerate() {
-                column.iter_mut().zip(&white).for_each(|(value, row)| *value = row[k]);
-            }
+            with_states!(self.states, N => match columns.len() {
+                1 => run(WhiteningColumns::<N, 1> { whitener: self, columns }),
+                _ => run(WhiteningColumns::<N, COLUMNS> { whitener: self, columns }),
+            });
         }
     }
 
     /// Whitens interleaved columns: a row holds one reading of every column.
-    pub fn apply_to_rows(&self, rows: &[Row], white: &mut Vec<Row>) {
+    pub fn apply_to_rows(&self, rows: &[InterleavedRow], white: &mut Vec<InterleavedRow>) {
         white.resize(rows.len(), [0.0; COLUMNS]);
         let (whiteners, readings, out) = ([self], [rows], [&mut white[..]]);
         with_states!(self.states, N => match self.is_upper {
-            true => run(Whitening::<N, COLUMNS, 1, true> { whiteners, readings, out }),
-            false => run(Whitening::<N, COLUMNS, 1, false> { whiteners, readings, out }),
+            true => run(WhiteningRows::<N, 1, true> { whiteners, readings, out }),
+            false => run(WhiteningRows::<N, 1, false> { whiteners, readings, out }),
         });
     }
 
     /// Whitens the interleaved columns of two filters: `rows[k]` by `whiteners[k]`.
-    pub fn apply_pair(whiteners: [&Self; 2], rows: [&[Row]; 2], [white, beside]: [&mut Vec<Row>; 2]) {
+    pub fn apply_pair(
+        whiteners: [&Self; 2],
+        rows: [&[InterleavedRow]; 2],
+        [white, beside]: [&mut Vec<InterleavedRow>; 2],
+    ) {
         let [first, second] = whiteners;
         let are_alike = first.states == second.states && first.readings.len() == second.readings.len();
         if are_alike && first.is_upper && second.is_upper {
             white.resize(rows[0].len(), [0.0; COLUMNS]);
             beside.resize(rows[1].len(), [0.0; COLUMNS]);
             let out = [&mut white[..], &mut beside[..]];
-            with_states!(first.states, N => run(Whitening::<N, COLUMNS, 2, true> { whiteners, readings: rows, out }));
+            with_states!(first.states, N => run(WhiteningRows::<N, 2, true> { whiteners, readings: rows, out }));
         } else {
             first.apply_to_rows(rows[0], white);
             second.apply_to_rows(rows[1], beside);
@@ -176,32 +164,62 @@ impl Whitener {
     }
 }
 
-/// Number of columns that are whitened side by side.
+/// Number of columns that are whitened side by side, and number of rows that are copied at a time for them.
 pub const COLUMNS: usize = 8;
+const ROWS: usize = 64;
 
 /// One reading of every one of [`COLUMNS`] columns.
-pub type Row = [f64; COLUMNS];
+pub type InterleavedRow = [f64; COLUMNS];
 
-/// Whitening of `C` interleaved columns by each of `FILTERS` filters with the same number of states and of readings.
-struct Whitening<'a, 'b, const N: usize, const C: usize, const FILTERS: usize, const UPPER: bool> {
-    whiteners: [&'a Whitener; FILTERS],
-    readings: [&'a [[f64; C]]; FILTERS],
-    out: [&'b mut [[f64; C]]; FILTERS],
+/// Whitening of up to `C` columns.
+struct WhiteningColumns<'a, 'b, const N: usize, const C: usize> {
+    whitener: &'a Whitener,
+    columns: &'a mut [&'b mut Vec<f64>],
 }
 
-impl<const N: usize, const C: usize, const FILTERS: usize, const UPPER: bool> Kernel
-    for Whitening<'_, '_, N, C, FILTERS, UPPER>
-{
+impl<const N: usize, const C: usize> Kernel for WhiteningColumns<'_, '_, N, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { whitener, columns } = self;
+        let mut x = [[0.0; C]; N];
+        // A missing column contains zeros.
+        let mut block = [[0.0; C]; ROWS];
+        let count = whitener.readings.len();
+        for first in (0..count).step_by(ROWS) {
+            let rows = first..(first + ROWS).min(count);
+            for (k, column) in columns.iter().enumerate() {
+                block.iter_mut().zip(&column[rows.clone()]).for_each(|(values, value)| values[k] = *value);
+            }
+            for (values, row) in block.iter_mut().zip(rows.clone()) {
+                *values = whitener.whiten::<N, C, false>(row, &mut x, values);
+            }
+            for (k, column) in columns.iter_mut().enumerate() {
+                column[rows.clone()].iter_mut().zip(&block).for_each(|(value, values)| *value = values[k]);
+            }
+        }
+    }
+}
+
+/// Whitening of interleaved columns by each of `FILTERS` filters with the same number of states and of readings.
+struct WhiteningRows<'a, 'b, const N: usize, const FILTERS: usize, const UPPER: bool> {
+    whiteners: [&'a Whitener; FILTERS],
+    readings: [&'a [InterleavedRow]; FILTERS],
+    out: [&'b mut [InterleavedRow]; FILTERS],
+}
+
+impl<const N: usize, const FILTERS: usize, const UPPER: bool> Kernel for WhiteningRows<'_, '_, N, FILTERS, UPPER> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
         let Self { whiteners, readings, out } = self;
-        let mut x = [[[0.0; C]; N]; FILTERS];
+        let mut x = [[[0.0; COLUMNS]; N]; FILTERS];
         for row in 0..whiteners[0].readings.len() {
             for filter in 0..FILTERS {
                 let values = &readings[filter][row];
-                out[filter][row] = whiteners[filter].whiten::<N, C, UPPER>(row, &mut x[filter], values);
+                out[filter][row] = whiteners[filter].whiten::<N, COLUMNS, UPPER>(row, &mut x[filter], values);
             }
         }
     }
@@ -230,7 +248,7 @@ mod tests {
     use crate::lanes::on_every_instruction_set;
     use approx::assert_relative_eq;
 
-    const ROWS: usize = 203;
+    const COUNT: usize = 203;
 
     /// Whitener of a ship with yaw rate and a random moment; `back` acts from the heading on the yaw rate.
     fn whitener(damping: f64, back: f64) -> Whitener {
@@ -240,17 +258,17 @@ mod tests {
             Sensor { state: 0, second_state: None, variance: 0.5 },
             Sensor { state: 1, second_state: None, variance: 0.2 },
         ];
-        let readings = (0..ROWS).map(|row| Reading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
+        let readings = (0..COUNT).map(|row| Reading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
         let initial = [[0.3, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.4]];
         Filter::new(System { steps: vec![Step { transition, process_noise }], sensors, readings, initial })
             .into_whitener()
     }
 
-    fn rows() -> Vec<Row> {
-        (0..ROWS).map(|row| std::array::from_fn(|k| ((1.3 + k as f64) * row as f64).sin())).collect()
+    fn rows() -> Vec<InterleavedRow> {
+        (0..COUNT).map(|row| std::array::from_fn(|k| ((1.3 + k as f64) * row as f64).sin())).collect()
     }
 
-    fn column(rows: &[Row], k: usize) -> Vec<f64> {
+    fn column(rows: &[InterleavedRow], k: usize) -> Vec<f64> {
         rows.iter().map(|row| row[k]).collect()
     }
 
@@ -263,15 +281,18 @@ mod tests {
             for (whitener, whitened) in [first, second].iter().zip(&pair) {
                 let mut together = Vec::new();
                 whitener.apply_to_rows(&rows(), &mut together);
+                let mut columns: Vec<Vec<f64>> = (0..COLUMNS).map(|k| column(&rows(), k)).collect();
+                whitener.apply(&mut columns.iter_mut().collect::<Vec<_>>());
                 for k in 0..COLUMNS {
                     let mut alone = column(&rows(), k);
                     let predicted = whitener.predicted_states(&alone);
                     let read = |row: usize| predicted[row][row % 2];
                     let innovations: Vec<f64> = alone.iter().enumerate().map(|(row, x)| x - read(row)).collect();
                     whitener.apply(&mut [&mut alone]);
-                    for row in 0..ROWS {
+                    for row in 0..COUNT {
                         assert_relative_eq!(alone[row], whitened[row][k], epsilon = 1e-12);
                         assert_relative_eq!(alone[row], together[row][k], epsilon = 1e-12);
+                        assert_relative_eq!(alone[row], columns[k][row], epsilon = 1e-12);
                         let log_variance = whitener.log_variances().nth(row).expect("a row");
                         let unit = innovations[row] * (-0.5 * log_variance).exp();
                         assert_relative_eq!(alone[row], unit, epsilon = 1e-12);
@@ -285,13 +306,13 @@ mod tests {
     fn every_instruction_set_gives_the_same_bits() {
         struct Whitened([Whitener; 2]);
         impl Kernel for Whitened {
-            type Output = [Vec<Row>; 2];
+            type Output = [Vec<InterleavedRow>; 2];
 
             #[inline(always)]
             fn call(self) -> Self::Output {
                 let (rows, mut white) = (rows(), [rows(), rows()]);
                 let (whiteners, out) = (self.0.each_ref(), white.each_mut().map(Vec::as_mut_slice));
-                Whitening::<3, COLUMNS, 2, true> { whiteners, readings: [&rows, &rows], out }.call();
+                WhiteningRows::<3, 2, true> { whiteners, readings: [&rows, &rows], out }.call();
                 white
             }
         }

@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 use estimation::column::{dot, gram};
 use estimation::kalman::Reading;
-use estimation::kalman::whitener::{Row, Whitener};
+use estimation::kalman::whitener::{InterleavedRow, Whitener};
 use estimation::rows;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use ship::first_order::State;
@@ -39,7 +39,7 @@ pub(super) struct Record {
     /// Columns of the last 1/T: the filters of many noise laws share them.
     last_columns: RefCell<Option<Rc<RecordColumns>>>,
     /// Memory for the whitened rows of two filters.
-    white: RefCell<[Vec<Row>; 2]>,
+    white: RefCell<[Vec<InterleavedRow>; 2]>,
 }
 
 /// Number of columns of the initial state, which come first.
@@ -51,7 +51,7 @@ struct RecordColumns {
     inverse_time: f64,
     /// At every reading the constant, the response to the initial yaw rate, the responses to rudder and constant, the
     /// reading, and the derivatives of the three responses with respect to 1/T.
-    rows: Vec<Row>,
+    rows: Vec<InterleavedRow>,
     /// Columns of the jumps.
     jumps: Vec<Vec<f64>>,
 }
@@ -173,7 +173,7 @@ impl Record {
                 }
                 alone => alone.iter().for_each(|(columns, filter)| filter.apply_to_rows(&columns.rows, white)),
             }
-            let project = |((columns, filter), white): ((Rc<RecordColumns>, Whitener), &mut Vec<Row>)| {
+            let project = |((columns, filter), white): ((Rc<RecordColumns>, Whitener), &mut Vec<InterleavedRow>)| {
                 WhitenedColumns::new(&columns.jumps, filter, white)
             };
             cases.into_iter().zip([white, beside]).map(project).collect::<Vec<_>>()
@@ -210,7 +210,7 @@ fn instrument_rows(
     [homogeneous, rudder, constant]: [&[f64]; 3],
     readings: &[f64],
     [by_yaw_rate, by_rudder, by_constant]: [&[f64]; 3],
-) -> impl Iterator<Item = Row> {
+) -> impl Iterator<Item = InterleavedRow> {
     let motions = homogeneous.iter().zip(rudder).zip(constant).zip(readings);
     let rows = motions.zip(by_yaw_rate).zip(by_rudder).zip(by_constant);
     rows.map(move |((((((f, g), h), y), df), dg), dh)| [one, *f, *g, *h, *y, *df, *dg, *dh])
@@ -237,7 +237,7 @@ impl RecordColumns {
 
 impl WhitenedColumns {
     /// Projects whitened columns off those of the initial state and of the jumps, which are not whitened yet.
-    fn new(jumps: &[Vec<f64>], filter: Whitener, rows: &mut [Row]) -> Option<Self> {
+    fn new(jumps: &[Vec<f64>], filter: Whitener, rows: &mut [InterleavedRow]) -> Option<Self> {
         let count = INITIAL_STATE + jumps.len();
         let (mut columns, components) = rows::orthonormalise::<_, INITIAL_STATE, 6>(rows);
         let mut triangle = DMatrix::zeros(count, count);
