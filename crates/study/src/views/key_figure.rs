@@ -41,7 +41,10 @@ pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     let remark = match &mut plot {
         Plot::Panels(data) => of_panels(data, highlight),
         Plot::Rows(data) => highlight_rows(data, highlight),
-        Plot::Cells(data) => of_cells(data, highlight),
+        Plot::Cells(data) => {
+            of_cells(data, highlight);
+            None
+        }
         Plot::ZigZag(_) => None,
     };
     let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
@@ -177,7 +180,7 @@ fn keep_t(stack: &mut Stack) {
 
 /// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
 /// colon become one row, their mean.
-fn of_cells(data: &mut CellMap, highlight: &Highlight) -> Option<String> {
+fn of_cells(data: &mut CellMap, highlight: &Highlight) {
     let (about, rows) = (&highlight.method_labels(), &highlight.rows);
     data.panels.retain(|(name, _)| !is_quiet(name.as_ref(), about));
     let is_empty = |column: &usize| {
@@ -198,7 +201,7 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) -> Option<String> {
         }
     }
     if rows.is_empty() || are_cells {
-        return None;
+        return;
     }
     let kind = |name: &str| name.split_once(": ").map_or(name, |(kind, _)| kind).to_owned();
     let is_about = |name: &String| rows.contains(name) || rows.iter().any(|row| name.ends_with(&format!(": {row}")));
@@ -215,7 +218,6 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) -> Option<String> {
         *panel = parts.iter().map(|(_, members)| mean_row(panel, members)).collect();
     }
     data.rows = parts.into_iter().map(|(name, _)| name).collect();
-    None
 }
 
 /// Mean of rows of a map, column by column; a single row is unchanged.
