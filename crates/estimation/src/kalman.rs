@@ -198,7 +198,7 @@ impl<const N: usize> Filter<N> {
             let reading = &readings[number];
             let repeats = number >= MAX_PERIOD && readings[number - MAX_PERIOD] == *reading;
             if repeats && stationary >= MAX_PERIOD {
-                let period = [gain_of[number - 2], gain_of[number - 1]];
+                let period: [u32; MAX_PERIOD] = std::array::from_fn(|k| gain_of[number - MAX_PERIOD + k]);
                 let again = readings[number..].iter().zip(&readings[number - MAX_PERIOD..]);
                 let again = again.take_while(|(reading, before)| reading == before).count();
                 gain_of.extend((0..again).map(|k| period[k % MAX_PERIOD]));

@@ -283,7 +283,7 @@ impl WhitenedColumns {
         Matrix3::from(gram([by_time, rudder, constant]))
     }
 
-    /// Whitened readings minus b G + b δ_r H, all projected off the nuisance columns.
+    /// Whitened readings minus b G and b δ_r H, all projected off the nuisance columns.
     fn residual(&self, gain: f64, offset: f64) -> Vec<f64> {
         let [rudder, constant, readings] = &self.projected;
         readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
