@@ -113,7 +113,7 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let read = read_from_reader(Path::new("log.csv"), text.as_bytes(), None, None).map_err(|e| e.to_string())?;
     let mut warnings = Warnings::default();
     warnings.extend(read.warnings);
-    let methods = fit::methods(&names, None).expect("they are known");
+    let methods = fit::labelled_methods(&names, None).expect("they are known");
     let fitted =
         fit::fit([&[read.trial], &[]], &methods, &[], true, warnings).map_err(|failure| failure.to_string())?;
     let document = fitted.document;

@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 69_697,
-    tests: 31_586,
+    code: 69_694,
+    tests: 31_585,
     long_functions: 0,
     shared_types: 7,
     packages: 298,

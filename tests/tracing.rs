@@ -14,7 +14,7 @@ use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
 use simulate::{SimulatedShip, Simulation, StreamKey};
 use trace::{Analysis, Selection, Settings, Verdict};
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, RecordOrigin, Trial};
 
 /// An effect with its parameters.
 type Missing = (Arc<dyn Effect>, Vec<f64>);
@@ -185,7 +185,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
         [(Channel::Heading, heading), (Channel::Rudder, helm.rudder().to_vec())].into();
     columns
         .extend(channels.iter().map(|(channel, value)| (*channel, time.iter().map(|&t| value(t)).collect::<Vec<_>>())));
-    let origin = Origin::Simulated { scenario: "channel".into(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: "channel".into(), cell: 0, replicate: 0 };
     Trial::new("channel", origin, Columns { time, channels: columns, unknown: Vec::new() }).expect("a valid record")
 }
 

@@ -3,14 +3,14 @@
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::ships;
-use simulate::{PreparedSimulation, Purpose, SimulatedShip, Simulation, Solver, StreamKey};
+use simulate::{PreparedSimulation, RngPurpose, SimulatedShip, Simulation, Solver, StreamKey};
 
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
 use crate::work::{Reach, Work, WorkGroup};
 
 /// Random numbers of a trial, without its simulation: heading noise and gyro noise of every row.
 fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
-    [Purpose::Heading, Purpose::YawRate].map(|purpose| {
+    [RngPurpose::Heading, RngPurpose::YawRate].map(|purpose| {
         let mut rng = key.rng(purpose);
         (0..rows).map(|_| rng.sample(StandardNormal)).collect()
     })

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use campaign::collect::in_memory;
-use campaign::curves::zigzag_figure;
+use campaign::curves::zigzag_plot_data;
 use campaign::scenario::Scenario;
 use rayon::prelude::*;
 use report::{Drawing, Theme};
@@ -43,7 +43,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
 fn drawing() -> Drawing {
     let trial = record(&first_order_zig_zag(ROWS));
     let zigzag = ZigZag::from_trial(&trial).expect("a zig-zag");
-    report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw("A zig-zag", &Theme::screen())
+    report::figures::Plot::from(zigzag_plot_data(&trial, &zigzag)).draw("A zig-zag", &Theme::screen())
 }
 
 /// Benchmarks of trials, scenarios and figures.

@@ -46,7 +46,7 @@ impl Block {
     }
 
     /// Replicates of the block in a cell with `replicates` replicates.
-    pub fn range(self, replicates: u64) -> Range<u64> {
+    pub fn replicate_range(self, replicates: u64) -> Range<u64> {
         let start = self.number * Self::REPLICATES;
         start..replicates.min(start + Self::REPLICATES)
     }

@@ -136,7 +136,7 @@ impl<'a> BlockStore<'a> {
         self.design.cells.iter().enumerate().flat_map(|(cell, facts)| {
             let count = facts.trials.end;
             let blocks = (0..Block::count_in_cell(count)).map(move |number| Block { cell, number });
-            blocks.map(move |block| (block, block.range(count).count() as u64))
+            blocks.map(move |block| (block, block.replicate_range(count).count() as u64))
         })
     }
 
@@ -182,7 +182,7 @@ pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS_FOLDER, "parquet"), (TIMINGS_FOLDER, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
-            folder.subfolder(name)?.remove_all(|file| stem_of(file, extension).is_some())?;
+            folder.subfolder(name)?.remove_matching(|file| stem_of(file, extension).is_some())?;
         }
     }
     Ok(())

@@ -16,10 +16,10 @@ use coloured::CompassError;
 /// Cramér–Rao bound of all records of one trial together: standard deviations of K (1/s), T (s) and K/T (1/s²), and the
 /// covariance of the relative errors of K and T, %².
 ///
-/// The noise law includes compass, recorded rudder, gyro, and one random moment: a random walk or gusts. Wind, waves
-/// and drift are model errors and excluded; spikes, which only remove information, are ignored. `None` without heading
-/// noise, for two random moments at once, for a compass with white and coloured error combined with another noise, and
-/// for a record that does not determine the ship.
+/// The noise law includes compass, recorded rudder, rate gyro, and one random moment: a random walk or gusts. Wind,
+/// waves and drift are model errors and excluded; spikes, which only remove information, are ignored. `None` without
+/// heading noise, for two random moments at once, for a compass with white and coloured error combined with another
+/// noise, and for a record that does not determine the ship.
 ///
 /// The information of the records adds; each has a separate initial state.
 pub fn cramer_rao_bound<'a>(

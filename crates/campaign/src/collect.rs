@@ -153,7 +153,7 @@ fn no_records(scenario: &Scenario) -> Failure {
     Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
 }
 
-/// Warns of absent records and of decisions of the reader, once per record.
+/// Warns of absent records and passes on the warnings of the reader, each text once.
 fn warn_of_records(scenario: &Scenario, observer: &dyn Observer) {
     let mut seen = HashSet::new();
     for set in scenario.cells.iter().filter_map(DesignCell::record_set) {
@@ -172,7 +172,7 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
     }
     if restart {
         // The manifest is written first: rows without a manifest belong to no study.
-        folder.remove_all(|name| [files::MANIFEST_FILE, files::LEGACY_ROWS_FILE].contains(&name))?;
+        folder.remove_matching(|name| [files::MANIFEST_FILE, files::LEGACY_ROWS_FILE].contains(&name))?;
         block_store::discard(folder)?;
     } else if block_store::has_blocks(folder.path())? {
         return Err(Failure::input(format!(
@@ -291,7 +291,7 @@ fn run_batches(
     let least = (4 * rayon::current_num_threads()).min(MAX_BATCH);
     let mut size = least;
     loop {
-        let tasks = plan.next(size as u64)?;
+        let tasks = plan.next_trials(size as u64)?;
         if tasks.is_empty() {
             return Ok(RunEnd::Done);
         }

@@ -3,7 +3,7 @@
 use document::method::MethodEntry;
 use identify::Estimate;
 use identify::replay::replay;
-use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
+use report::figures::{OvershootMark, TimeSpan, ZigZagMark, ZigZagPlot};
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
 use trial::zigzag::{Execute, Overshoot};
@@ -35,7 +35,7 @@ pub fn angle_curve_deg(time: &[f64], angle: &[f64]) -> PlotCurve {
 }
 
 /// Plot data of a zig-zag with its characteristic points marked.
-pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
+pub fn zigzag_plot_data(trial: &Trial, zigzag: &ZigZag) -> ZigZagPlot {
     let mark = |time: Quantity, heading: Quantity| ZigZagMark { t_s: time.value, heading_deg: to_deg(heading.value) };
     let execute = |execute: &Execute| mark(execute.time, execute.heading);
     let overshoot = |overshoot: &Overshoot| OvershootMark {
@@ -54,7 +54,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         true => zigzag.executes.get(settled),
         false => zigzag.executes.get(1),
     };
-    ZigzagTrial {
+    ZigZagPlot {
         heading: angle_curve_deg(trial.time(), trial.heading()),
         // A thinned record keeps only its extremes; as points they would look like the record.
         heading_as_points: trial.len() <= PlotCurve::MAX_PAIRS

@@ -45,11 +45,11 @@ pub struct CellFacts {
     pub physics: Option<MissingPhysics>,
     /// `true` if the ship has K and T of its own in addition to those of the nearest first-order response: a response
     /// ship with effects.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub has_own_indices: bool,
+    #[serde(rename = "has_own_indices", default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_base_with_effects: bool,
     /// `true` if K and T are compared with those of the first-order response nearest to a ship that is not first order.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub is_nearest: bool,
+    #[serde(rename = "is_nearest", default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_compared_with_nearest: bool,
     /// L/V, s, on which IMO limits depend; `null` unless manoeuvres are predicted and neither length nor speed is
     /// sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -92,8 +92,8 @@ impl Design {
             values: cell.values.clone(),
             missing: cell.missing(),
             physics: cell.physics().filter(|_| is_stated),
-            has_own_indices: cell.has_own_indices(),
-            is_nearest: cell.is_nearest(),
+            is_base_with_effects: cell.is_base_with_effects(),
+            is_compared_with_nearest: cell.is_compared_with_nearest(),
             records: cell.record_set().map_or_else(Vec::new, judged_records),
             length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|ship| ship.length / ship.speed),
             ..CellFacts::default()

@@ -17,7 +17,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, SimulatedTrial, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::identified_ship::{self, RecordFacts};
+use crate::identified_ship::{self, MethodIndependentResults};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceRow};
@@ -61,7 +61,7 @@ pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<SimulatedTrial
 pub struct TrueResponses {
     /// First-order response nearest to the ship; the ship itself if it is first order.
     pub nearest: Option<FirstOrder>,
-    /// First-order base of a response ship with effects.
+    /// First-order base of a response ship with effects; `None` for a first-order ship or a hull.
     pub base: Option<FirstOrder>,
 }
 
@@ -156,7 +156,7 @@ impl<'a> TrialRunner<'a> {
         let reference = if cell.is_fixed() {
             self.references[index - self.first_cell].get_or_init(|| self.shared(index))
         } else {
-            individual = TrialReference::from_simulated(trial_spec, &simulated, key, cell.traces());
+            individual = TrialReference::from_simulated(trial_spec, &simulated, key, cell.is_traced());
             &individual
         };
         let blank = StudyRow {
@@ -181,7 +181,7 @@ impl<'a> TrialRunner<'a> {
         let key = stream_key(self.scenario, TrialId { cell, replicate: 0 });
         let Ok(trial_spec) = self.scenario.cells[cell].trial_spec(&key) else { return TrialReference::default() };
         match self.simulate(cell, &trial_spec, &key) {
-            Ok(all) => TrialReference::from_simulated(&trial_spec, &all, &key, self.scenario.cells[cell].traces()),
+            Ok(all) => TrialReference::from_simulated(&trial_spec, &all, &key, self.scenario.cells[cell].is_traced()),
             Err(_) => TrialReference { nearest: trial_spec.specification.truth, ..TrialReference::default() },
         }
     }
@@ -270,7 +270,7 @@ impl TrialInput<'_> {
             |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
         // An effect may require speed and sway.
-        let identified = |facts: &RecordFacts| {
+        let identified = |facts: &MethodIndependentResults| {
             Some(identified_ship::from_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])))
         };
         StudyRow {
@@ -441,8 +441,8 @@ method.output-error = {}
         assert_eq!([alone.base_k_per_s, alone.base_t_s], [Some(0.1), Some(25.0)]);
         let nearest = alone.true_t_s.expect("a response is nearest");
         assert!(nearest < 24.0, "the damping shortens T: {nearest}");
-        assert_eq!(alone.truth()[1], Some(nearest), "output error fits a first-order response");
-        assert_eq!(traced.truth(), [Some(0.1), Some(25.0)], "a trace models the damping");
+        assert_eq!(alone.true_indices()[1], Some(nearest), "output error fits a first-order response");
+        assert_eq!(traced.true_indices(), [Some(0.1), Some(25.0)], "a trace models the damping");
         assert!(
             alone.errors()[1].expect("an answer").abs() < 0.01 && traced.errors()[1].expect("an answer").abs() < 0.2
         );

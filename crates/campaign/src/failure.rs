@@ -37,9 +37,9 @@ pub struct FailureParts {
     pub column: Option<usize>,
     /// Description of the fault, without the name of the file.
     pub problem: String,
-    /// Expected text in its place.
+    /// Text that was expected in place of the faulty one.
     pub expected: Option<String>,
-    /// Remedy.
+    /// Advice on how to correct the fault.
     pub help: Option<String>,
 }
 

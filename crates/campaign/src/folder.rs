@@ -64,7 +64,7 @@ impl ResultFolder {
     }
 
     /// Temporary file, renamed to the given name on [`TemporaryFile::persist`].
-    pub fn create(&self, name: &str) -> Result<TemporaryFile, Failure> {
+    pub fn create_temporary(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
         let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;
         // Left by an earlier fault.
@@ -75,14 +75,14 @@ impl ResultFolder {
 
     /// Writes a file.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-        let mut file = self.create(name)?;
+        let mut file = self.create_temporary(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
         file.persist()
     }
 
     /// Writes a file and flushes it to the disk: for content that cannot be computed again.
     pub fn write_synced(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
-        let mut file = self.create(name)?;
+        let mut file = self.create_temporary(name)?;
         file.write_all(content.as_ref()).on("write", &file.path)?;
         file.flush().on("write", &file.path)?;
         file.file.get_ref().sync();
@@ -90,10 +90,10 @@ impl ResultFolder {
     }
 
     /// Removes the selected files, and temporary files that killed programs left behind.
-    pub fn remove_all(&self, is_old: impl Fn(&str) -> bool) -> Result<(), Failure> {
+    pub fn remove_matching(&self, is_selected: impl Fn(&str) -> bool) -> Result<(), Failure> {
         let is_left = |name: &str| name.starts_with(UNDER_WAY) && disk::age(&self.path.join(name)) > Some(MAX_AGE);
         let names = disk::names(&self.path).on("list the folder", &self.path)?.into_iter();
-        let names = names.filter(|name| is_old(name) || is_left(name));
+        let names = names.filter(|name| is_selected(name) || is_left(name));
         names.map(|name| self.path.join(name)).try_for_each(|path| disk::remove_if_there(&path).on("remove", &path))
     }
 }

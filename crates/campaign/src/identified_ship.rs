@@ -22,7 +22,7 @@ const NO_MOTION: &str = "these records do not determine speed loss and drift, so
 
 /// Facts of the records of one ship that are independent of the fitted model; computed once for all methods.
 #[derive(Debug, Clone)]
-pub struct RecordFacts<'a> {
+pub struct MethodIndependentResults<'a> {
     trials: &'a [Trial],
     gear: Option<IdentifiedGear>,
     /// Standard deviation of the heading readings, rad.
@@ -40,7 +40,7 @@ pub struct RecordFacts<'a> {
     pub no_track: Option<String>,
 }
 
-impl<'a> RecordFacts<'a> {
+impl<'a> MethodIndependentResults<'a> {
     /// Facts of the records of one ship, without speed and drift.
     pub fn from_trials(trials: &'a [Trial]) -> Self {
         let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::from_trial(trial).ok()).collect();
@@ -173,7 +173,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 ///
 /// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is the reading noise, or
 /// the rms residual of the replay if the records are not zig-zags.
-pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
+pub fn from_estimate(estimate: &Estimate, facts: &MethodIndependentResults) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
@@ -197,7 +197,7 @@ pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identif
 ///
 /// If no effect is missing but a random moment acts, the first-order member comes from `maximum-likelihood`, whose
 /// covariance includes the uncertainty of the noise law.
-pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
+pub fn from_analysis(analysis: &Analysis, facts: &MethodIndependentResults) -> IdentifiedShip {
     let members = analysis.plausible_structures().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = analysis.noise;
@@ -209,7 +209,7 @@ pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip
 }
 
 /// Ship with first-order member and noise of `maximum-likelihood`, if it also estimates a random moment.
-fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
+fn with_likelihood(mut ship: IdentifiedShip, facts: &MethodIndependentResults) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| from_estimate(&estimate, facts))
     else {
@@ -309,7 +309,7 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Predictions;
+    use crate::scenario::PredictionSettings;
     use identify::output_error;
     use predict::ShipMixture;
     use ship::FirstOrder;
@@ -334,7 +334,7 @@ mod tests {
     fn a_ten_ten_predicts_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
         let gear = ship.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(ship.noise.heading_sd_rad) - 0.1).abs() < 0.02 && ship.noise.moment.is_none());
@@ -365,7 +365,7 @@ mod tests {
         assert!(ZigZag::from_trial(&cut).is_ok(), "the rest is a zig-zag");
         let trials = [cut];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
         assert_eq!(ship.approach_yaw_rate_rad_s, 0.0);
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let prediction =
@@ -378,8 +378,8 @@ mod tests {
     fn the_moment_of_the_likelihood_is_handed_on() {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
-        let ship = from_estimate(&method.identify(&trials).expect("a fit"), &RecordFacts::from_trials(&trials))
-            .expect("a covariance");
+        let estimate = method.identify(&trials).expect("a fit");
+        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
         assert!(!ship.noise.moment.is_none());
         assert!(ship.noise.moment.size() > 0.0);
     }
@@ -388,7 +388,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let ship = from_analysis(&analysis, &RecordFacts::from_trials(&trials));
+        let ship = from_analysis(&analysis, &MethodIndependentResults::from_trials(&trials));
         assert!((ship.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &ship.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
@@ -420,7 +420,7 @@ mod tests {
             propeller_diameter: Some(9.86),
             ..HullParticulars::default()
         };
-        trial.with_conditions(trial::Conditions { hull, ..trial::Conditions::default() })
+        trial.with_conditions(trial::DeclaredConditions { hull, ..trial::DeclaredConditions::default() })
     }
 
     /// Two zig-zags and the particulars predict the turning circle: advance and tactical diameter to 3 %. Without beam
@@ -429,7 +429,7 @@ mod tests {
     fn zig_zags_of_a_tanker_predict_her_circle() {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
-        let facts = RecordFacts::from_trials(&zig_zags).with_motion(None, &[]);
+        let facts = MethodIndependentResults::from_trials(&zig_zags).with_motion(None, &[]);
         let ship = from_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
         // The ship begins straight: the yaw rate of replays is an error, less than a twentieth of that in the circle.
@@ -438,7 +438,7 @@ mod tests {
             "{:?}",
             facts.hulls
         );
-        let asked = Predictions { manoeuvres: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
+        let asked = PredictionSettings { manoeuvres: vec!["turning-circle:35".parse().expect("known")], draws: 300 };
         let check = PredictionCheck::new(&asked, &tanker("zig-zag:10/10"), &StreamKey::default(), &zig_zags);
         let figures = check.characteristics(|_| Some(ship));
         for name in ["advance_lengths", "tactical_diameter_lengths"] {

@@ -50,7 +50,7 @@ pub fn max_trials(scenario: &Scenario, blocks: &Range<u64>) -> u64 {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let trials = |place| {
             let block = Block::from_index(place, scenario);
-            block.range(scenario.max_cell_trials(block.cell)).count() as u64
+            block.replicate_range(scenario.max_cell_trials(block.cell)).count() as u64
         };
         return blocks.clone().map(trials).sum();
     }
@@ -88,7 +88,7 @@ impl<'a> TrialPlan<'a> {
 
     /// Next trials, at most `most` and for measured records whole blocks; empty if the shard is done. The rows of
     /// all trials issued before must have been passed to [`TrialPlan::add`].
-    pub fn next(&mut self, most: u64) -> Result<Vec<TrialId>, Failure> {
+    pub fn next_trials(&mut self, most: u64) -> Result<Vec<TrialId>, Failure> {
         let mut tasks = Vec::new();
         loop {
             let open = self.open.end.saturating_sub(self.open.start);
@@ -113,7 +113,7 @@ impl<'a> TrialPlan<'a> {
             if block.number > 0 && self.rule.as_ref().is_some_and(StopCheck::is_met) {
                 continue;
             }
-            let all = block.range(self.scenario.max_cell_trials(block.cell));
+            let all = block.replicate_range(self.scenario.max_cell_trials(block.cell));
             if all.is_empty() {
                 continue;
             }
@@ -181,7 +181,7 @@ mod tests {
         assert_eq!(plan.peek().expect("nothing is read"), Some(TrialId { cell: 0, replicate: 256 }));
         let mut tasks = Vec::new();
         loop {
-            let next = plan.next(100).expect("nothing is read");
+            let next = plan.next_trials(100).expect("nothing is read");
             if next.is_empty() {
                 break;
             }
@@ -207,10 +207,11 @@ mod tests {
         };
         let read = |block: Block| Ok((0..256).map(|replicate| row(block.cell as u64, replicate)).collect());
         let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
-        let first = plan.next(1000).expect("readable");
+        let first = plan.next_trials(1000).expect("readable");
         assert_eq!((first.len(), first[255]), (256, TrialId { cell: 0, replicate: 255 }));
         first.iter().for_each(|task| plan.add(&row(0, task.replicate)));
         // The rule is met after one block of the first cell; that of the second is stored.
-        assert_eq!((plan.next(1000).expect("readable"), plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
+        let next = plan.next_trials(1000).expect("readable");
+        assert_eq!((next, plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
     }
 }

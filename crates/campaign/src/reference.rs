@@ -22,7 +22,7 @@ pub struct TrialReference {
     pub bound: Option<([f64; 3], [[f64; 2]; 2])>,
     /// Undisturbed second manoeuvre without measurement noise.
     pub validation: Option<Trial>,
-    /// Expected likelihood ratio of the true model against the nearest first-order response.
+    /// Expected 2 ln Λ of the truth against the nearest first-order response.
     pub expected: Option<f64>,
 }
 
@@ -42,7 +42,7 @@ impl TrialReference {
         let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
         let bound = nearest.and_then(|nearest| bound::cramer_rao_bound(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        // The ratio is defined for white heading noise only.
+        // The expected 2 ln Λ is computed for white heading noise only.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
         let white = sd.filter(|_| heading_wander.is_none());
         let ratio = |(near, sd): (NearestResponse, f64)| {

@@ -16,12 +16,12 @@ use simulate::StreamKey;
 use trial::{Channel, Trial};
 
 use crate::engine::{self, TrialInput, TrialOutcome, TrialRunner};
-use crate::identified_ship::{self, RecordFacts};
+use crate::identified_ship::{self, MethodIndependentResults};
 use crate::prediction_check::is_repeated_in_lengths;
 use crate::reference::TrialReference;
 use crate::rows::{PredictedCharacteristic, StudyRow};
 use crate::scenario::records::RecordSet;
-use crate::scenario::{Predictions, Procedure, Scenario};
+use crate::scenario::{PredictionSettings, Procedure, Scenario};
 use crate::shard::TrialId;
 use crate::timings::TrialTiming;
 
@@ -189,12 +189,13 @@ impl SharedTrials<'_> {
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
-        identified_ship::from_analysis(analysis, &RecordFacts::from_trials(trials).with_motion(Some(analysis), &[]))
+        let shared = MethodIndependentResults::from_trials(trials).with_motion(Some(analysis), &[]);
+        identified_ship::from_analysis(analysis, &shared)
     };
     match answer {
         FitAnswer::StraightOn => None,
         FitAnswer::Response(estimate) => {
-            identified_ship::from_estimate(estimate, &RecordFacts::from_trials(fitted)).filter(sound)
+            identified_ship::from_estimate(estimate, &MethodIndependentResults::from_trials(fitted)).filter(sound)
         }
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
@@ -207,7 +208,7 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
 
 /// Characteristics of the validation record, predicted by replaying its rudder with drawn ships at its scale, after
 /// removing the current determined from its track.
-fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &Predictions) -> Box<[PredictedCharacteristic]> {
+fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &PredictionSettings) -> Box<[PredictedCharacteristic]> {
     let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
         (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),
         _ => Some(ship.clone()),

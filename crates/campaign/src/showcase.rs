@@ -4,19 +4,20 @@
 use document::method::MethodEntry;
 use identify::method_entry::method_entry;
 use identify::{Estimate, IdentifierSettings};
-use report::figures::ZigzagTrial;
+use report::figures::ZigZagPlot;
 use report::{CurveOrigin, PlotCurve};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use simulate::Truth;
 use trial::{Quantity, Trial, ZigZag};
 
-use crate::curves::{angle_curve_deg, curve_origin, replay_curves, zigzag_figure};
+use crate::curves::{angle_curve_deg, curve_origin, replay_curves, zigzag_plot_data};
 use crate::engine;
 use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 use crate::shard::TrialId;
 use crate::stored_figures::{
-    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays,
+    CurveFit, DerivativeCurves, EstimateWithInterval, Intervals, MethodEstimate, MotionCurves, ReferenceIndices,
+    Replays,
 };
 
 /// First trial of a cell in detail.
@@ -25,7 +26,7 @@ pub struct Showcase {
     /// Title of the cell.
     pub title: String,
     /// Trial with its characteristic points; absent if it is not a zig-zag.
-    pub trial: Option<ZigzagTrial>,
+    pub trial: Option<ZigZagPlot>,
     /// Fourier fit with its residual.
     pub fourier_fit: Option<CurveFit>,
     /// Heading, yaw rate and yaw acceleration of the fits against the truth.
@@ -73,9 +74,9 @@ pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let fits = FourierCurve::from_cell(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
-        trial: ZigZag::from_trial(trial).ok().map(|zigzag| ZigzagTrial {
+        trial: ZigZag::from_trial(trial).ok().map(|zigzag| ZigZagPlot {
             truth: Some(angle_curve_deg(&truth.time, &truth.heading)),
-            ..zigzag_figure(trial, &zigzag)
+            ..zigzag_plot_data(trial, &zigzag)
         }),
         fourier_fit: fits.first().map(|fit| fit.curve_fit()),
         derivatives: (!fits.is_empty()).then(|| DerivativeCurves {
@@ -98,7 +99,7 @@ fn intervals(
     published: &Published,
 ) -> Intervals {
     let point = |quantity: Quantity| {
-        quantity.value.is_finite().then_some(PointEstimate { value: quantity.value, interval: quantity.ci95 })
+        quantity.value.is_finite().then_some(EstimateWithInterval { value: quantity.value, interval: quantity.ci95 })
     };
     let estimate = |(entry, _): &(MethodEntry, Option<Estimate>)| MethodEstimate {
         origin: curve_origin(names, &entry.method),
@@ -107,8 +108,8 @@ fn intervals(
     };
     Intervals {
         estimates: answers.iter().map(estimate).collect(),
-        truth: truth.map(|truth| Reference { k_per_s: truth.K(), t_s: truth.T() }),
-        published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| Reference { k_per_s, t_s }),
+        truth: truth.map(|truth| ReferenceIndices { k_per_s: truth.K(), t_s: truth.T() }),
+        published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| ReferenceIndices { k_per_s, t_s }),
     }
 }
 
@@ -171,19 +172,19 @@ impl<'a> FourierCurve<'a> {
         MotionCurves {
             origin: self.origin.clone(),
             name: None,
-            heading: self.sampled(|t| self.curve.heading(t)),
-            yaw_rate: self.sampled(|t| self.curve.yaw_rate(t)),
-            yaw_acceleration: self.sampled(|t| self.curve.yaw_acceleration(t)),
+            heading: self.sampled(|t| self.curve.heading_at(t)),
+            yaw_rate: self.sampled(|t| self.curve.yaw_rate_at(t)),
+            yaw_acceleration: self.sampled(|t| self.curve.yaw_acceleration_at(t)),
         }
     }
 
     fn curve_fit(&self) -> CurveFit {
         let (time, heading) = (self.trial.time(), self.trial.heading());
         let rows = time.iter().zip(heading);
-        let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading(t - self.start())).collect();
+        let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading_at(t - self.start())).collect();
         CurveFit {
             measured: angle_curve_deg(time, heading),
-            fitted: self.sampled(|t| self.curve.heading(t)),
+            fitted: self.sampled(|t| self.curve.heading_at(t)),
             origin: Some(self.origin.clone()),
             fitted_name: format!("{}, {} harmonics", self.origin.label(), self.curve.cosine.len()),
             residual: angle_curve_deg(time, &residual),

@@ -37,7 +37,7 @@ impl StopCheck {
         if let Some(error) = row.errors()[place] {
             sums.errors.add(100.0 * error);
         }
-        if let Some((truth, [low, high])) = row.truth()[place].zip(ends) {
+        if let Some((truth, [low, high])) = row.true_indices()[place].zip(ends) {
             sums.quoted += 1.0;
             sums.held += f64::from(u8::from(low <= truth && truth <= high));
         }

@@ -139,7 +139,7 @@ impl Replays {
         let below = |replay: &ReplayCurves| {
             let size = |size: f64| format!("{}°", number::significant(size, 2));
             let rms = replay.rms_deg.filter(|rms| rms.is_finite()).map_or_else(|| MISSING.into(), size);
-            let largest = replay.residual.finite().map(|(_, y)| y.abs()).reduce(f64::max);
+            let largest = replay.residual.finite_pairs().map(|(_, y)| y.abs()).reduce(f64::max);
             let largest = largest.map_or_else(String::new, |largest| format!(", up to {}", size(largest)));
             let solid = Pen::new(replay.origin.look().colour).width(0.8);
             LayeredPanel {
@@ -165,12 +165,13 @@ impl Replays {
     }
 }
 
-/// Value with its interval, if the method gives one.
+/// Estimate of K or T, with its interval if the method gives one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PointEstimate {
-    /// Value.
+#[schemars(rename = "PointEstimate")]
+pub struct EstimateWithInterval {
+    /// Estimate: of K in 1/s, of T in s.
     pub value: f64,
-    /// 95 % interval.
+    /// 95 % interval, in the same unit.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -179,18 +180,19 @@ pub struct PointEstimate {
 pub struct MethodEstimate {
     /// Method, which determines the style of the row.
     pub origin: CurveOrigin,
-    /// Gain, 1/s.
-    pub k_per_s: Option<PointEstimate>,
-    /// Time constant, s.
-    pub t_s: Option<PointEstimate>,
+    /// K, 1/s.
+    pub k_per_s: Option<EstimateWithInterval>,
+    /// T, s.
+    pub t_s: Option<EstimateWithInterval>,
 }
 
 /// Reference values of K and T.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Reference {
-    /// Gain, 1/s.
+#[schemars(rename = "Reference")]
+pub struct ReferenceIndices {
+    /// K, 1/s.
     pub k_per_s: f64,
-    /// Time constant, s.
+    /// T, s.
     pub t_s: f64,
 }
 
@@ -200,9 +202,9 @@ pub struct Intervals {
     /// Estimates, from top to bottom.
     pub estimates: Vec<MethodEstimate>,
     /// Parameters of the simulated trial.
-    pub truth: Option<Reference>,
+    pub truth: Option<ReferenceIndices>,
     /// Published parameters.
-    pub published: Option<Reference>,
+    pub published: Option<ReferenceIndices>,
 }
 
 /// Half-width of the axis in multiples of the median distance from the truth; values beyond are outliers.
@@ -211,24 +213,23 @@ const SPREADS: f64 = 7.0;
 impl Intervals {
     /// Rows: K and T side by side, one row per method.
     pub fn rows(&self) -> NamedRows {
-        type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
-        let column = |title: String, quantity: Estimated, reference: fn(&Reference) -> f64| {
+        type Estimated = fn(&MethodEstimate) -> Option<EstimateWithInterval>;
+        let column = |title: String, quantity: Estimated, reference: fn(&ReferenceIndices) -> f64| {
             let row = |estimate: &MethodEstimate| {
-                let mark = |point: PointEstimate| {
+                let mark = |point: EstimateWithInterval| {
                     RowItem::new("", RowKind::Mark(estimate.origin.look(), point.value, point.interval))
                 };
                 quantity(estimate).map(mark).into_iter().collect()
             };
-            let line = |origin: CurveOrigin, pair: &Option<Reference>| {
-                pair.as_ref()
-                    .map(|pair| (origin.label().to_owned(), Pen::from_origin(&origin).width(0.8), reference(pair)))
+            let line = |origin: CurveOrigin, pair: Option<ReferenceIndices>| {
+                pair.map(|pair| (origin.label().to_owned(), Pen::from_origin(&origin).width(0.8), reference(&pair)))
             };
-            let truth = line(CurveOrigin::Truth, &self.truth);
+            let truth = line(CurveOrigin::Truth, self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);
             RowsColumn {
                 x: AxisSpec::decimal(title).within(SPREADS, centre),
                 rows: self.estimates.iter().map(row).collect(),
-                lines: truth.into_iter().chain(line(CurveOrigin::Published, &self.published)).collect(),
+                lines: truth.into_iter().chain(line(CurveOrigin::Published, self.published)).collect(),
                 ..RowsColumn::default()
             }
         };
@@ -305,13 +306,13 @@ mod tests {
 
     #[test]
     fn what_lies_beyond_an_axis_and_what_is_missing_is_said() {
-        let point = |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01]) });
+        let point = |value: f64| Some(EstimateWithInterval { value, interval: Some([value - 0.01, value + 0.01]) });
         let estimate = |(number, id): (usize, &str)| MethodEstimate {
             origin: CurveOrigin::Method(id.to_owned()),
             k_per_s: point(if number == 7 { 0.4 } else { 0.1 + 0.001 * number as f64 }),
             t_s: None,
         };
-        let truth = Some(Reference { k_per_s: 0.1, t_s: 16.0 });
+        let truth = Some(ReferenceIndices { k_per_s: 0.1, t_s: 16.0 });
         let estimates = method_ids().enumerate().map(estimate).collect();
         let drawn = svg(Intervals { estimates, truth, ..Intervals::default() }.rows());
         assert!(drawn.contains("<tspan font-style=\"italic\">K</tspan> [1/s]") && drawn.contains("no estimate"));

@@ -51,7 +51,7 @@ impl<'a> BlockWriter<'a> {
 
     /// Replicates of a block of the scenario.
     fn range(&self, block: Block) -> Range<u64> {
-        block.range(self.scenario.max_cell_trials(block.cell))
+        block.replicate_range(self.scenario.max_cell_trials(block.cell))
     }
 
     fn add(&mut self, outcome: TrialOutcome) -> Result<(), Failure> {

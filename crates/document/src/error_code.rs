@@ -10,7 +10,7 @@ pub enum ErrorCode {
     /// Wrong input without a more specific code.
     #[default]
     Input,
-    /// Failed work.
+    /// Failure of the work itself, not of the input, without a more specific code.
     Work,
     /// Ctrl-C, or a termination signal.
     Interrupted,

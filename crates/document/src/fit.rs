@@ -15,7 +15,7 @@ use crate::single_records::{Amplitude, SingleRecords};
 use crate::trial_particulars::TrialParticularsEntry;
 use crate::warning::{Warning, WarningCode, WarningSource};
 
-/// Schema name.
+/// Name and version of the schema of `fit.json`.
 pub const SCHEMA: &str = "fit/2";
 
 /// Method shown in the plots, if it gives an estimate.
@@ -52,11 +52,11 @@ pub struct CircleEntry {
     pub side: String,
     /// Rudder angle of the turn, deg.
     pub rudder_deg: f64,
-    /// Advance at 90° of heading, ship lengths; `null` without positions or length.
+    /// Advance at 90° change of heading, ship lengths; `null` without positions or length.
     pub advance_lengths: Option<f64>,
-    /// Transfer at 90° of heading, ship lengths.
+    /// Transfer at 90° change of heading, ship lengths.
     pub transfer_lengths: Option<f64>,
-    /// Tactical diameter at 180° of heading, ship lengths.
+    /// Tactical diameter at 180° change of heading, ship lengths.
     pub tactical_diameter_lengths: Option<f64>,
 }
 
@@ -73,11 +73,11 @@ pub struct PredictedCircleEntry {
     pub extrapolated: bool,
     /// Number of drawn ships.
     pub draws: usize,
-    /// Advance at 90° of heading, ship lengths.
+    /// Advance at 90° change of heading, ship lengths.
     pub advance_lengths: MedianEntry,
-    /// Transfer at 90° of heading, ship lengths.
+    /// Transfer at 90° change of heading, ship lengths.
     pub transfer_lengths: MedianEntry,
-    /// Tactical diameter at 180° of heading, ship lengths.
+    /// Tactical diameter at 180° change of heading, ship lengths.
     pub tactical_diameter_lengths: MedianEntry,
 }
 
@@ -139,7 +139,7 @@ pub struct ZigZagEntry {
 /// `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitDocument {
-    /// `fit/2`.
+    /// Version of the schema: `fit/2`.
     #[schemars(extend("const" = "fit/2"))]
     pub schema: String,
     /// Records.
@@ -214,7 +214,7 @@ impl FitDocument {
     }
 
     /// Warnings on other estimates, which are frequent and less relevant.
-    pub fn notes(&self) -> impl Iterator<Item = &Warning> {
+    pub fn other_warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|warning| self.is_note(warning))
     }
 

@@ -17,7 +17,7 @@ pub struct IdentifiedCoefficient {
     pub key: String,
     /// Symbol.
     pub symbol: String,
-    /// Value.
+    /// Estimate, dimensionless.
     pub value: f64,
     /// Prior mean.
     pub expected: f64,

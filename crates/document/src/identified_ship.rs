@@ -115,7 +115,7 @@ impl WeightedStructure {
     }
 
     /// Indices of the parameters that are dead times.
-    pub fn dead_times(&self, model: &ResponseModel) -> Vec<usize> {
+    pub fn dead_time_indices(&self, model: &ResponseModel) -> Vec<usize> {
         let named = (SteeringLag::DeadTime.id(), SteeringLag::DeadTime.form());
         let dead_times = model.effects_with_ranges().filter(|(effect, _)| (effect.id(), effect.form()) == named);
         dead_times.map(|(_, range)| range.start).collect()
@@ -216,7 +216,7 @@ impl IdentifiedShip {
     /// positive.
     pub fn logged_rudder_delay(&self) -> Option<f64> {
         let likeliest = self.members.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
-        let places = likeliest.dead_times(&likeliest.model().ok()?);
+        let places = likeliest.dead_time_indices(&likeliest.model().ok()?);
         let late = -places.iter().map(|place| likeliest.parameters[*place]).sum::<f64>();
         (late > 0.0).then_some(late)
     }
@@ -225,7 +225,7 @@ impl IdentifiedShip {
     /// is similar.
     pub fn timescale(&self) -> Option<f64> {
         if let Some(particulars) = self.particulars() {
-            return Some(particulars.time());
+            return Some(particulars.ship_length_time());
         }
         let gain = *self.members.first()?.parameters.get(1)?;
         (gain > 0.0).then(|| gain.sqrt().recip())

@@ -5,7 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// Number with its standard deviation (GUM: standard uncertainty) and its 95 % interval, as far as known.
 ///
 /// For a quantity read from a record, `sd` includes the white noise of heading and rudder, but not slow errors such as
-/// gyro bias, drift or waves longer than the local fits. For an estimate, both are those of the method.
+/// rate-gyro bias, drift or waves longer than the local fits. For an estimate, both are those of the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Quantity {
     /// Value, in SI units and radians unless a name states otherwise; in files `null` if infinite (T of a

@@ -28,7 +28,7 @@ pub struct ComparedTerm {
     pub unit: String,
     /// Estimate from the records of all scales.
     pub joint: Quantity,
-    /// Estimates from the records of every scale alone; `null` if they do not determine it.
+    /// Estimate from the records of each scale alone; `null` where they do not determine the term.
     #[serde(rename = "own")]
     pub by_scale: Vec<Option<Quantity>>,
     /// Maximum difference between two scales in units of its standard deviation.
@@ -80,7 +80,7 @@ impl ScalesEntry {
         let entry = |(ship, records): &(Particulars, Vec<usize>)| ScaleEntry {
             length_m: ship.length,
             speed_m_s: ship.speed,
-            time_factor: ship.factor_to(first, [1, 0]),
+            time_factor: ship.similarity_factor_to(first, [1, 0]),
             files: records.iter().map(|record| files[*record].to_owned()).collect(),
         };
         Self { groups: groups.iter().map(entry).collect(), comparisons }

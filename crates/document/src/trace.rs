@@ -24,7 +24,7 @@ pub use entries::{
 };
 pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry, HorizonEntry};
 
-/// Schema name.
+/// Name and version of the schema of `trace.json`.
 pub const SCHEMA: &str = "trace/4";
 
 /// Maximum number of record names in a title; one further name is written out, too.
@@ -202,10 +202,11 @@ pub struct PriorEntry {
 
 /// Whiteness of the residuals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ResidualEntry {
-    /// Residual of the base.
+#[schemars(rename = "ResidualEntry")]
+pub struct ResidualWhitenessEntry {
+    /// Whiteness of the residual of the base.
     pub before: WhitenessEntry,
-    /// Residual of the structure average.
+    /// Whiteness of the residual of the structure average.
     pub after: WhitenessEntry,
 }
 
@@ -278,7 +279,7 @@ pub struct ModelEntry {
 /// Result of the analysis of a trace, without files and identified ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Document {
-    /// `trace/4`.
+    /// Version of the schema: `trace/4`.
     #[schemars(extend("const" = "trace/4"))]
     pub schema: String,
     /// Result in a few sentences.
@@ -304,7 +305,7 @@ pub struct Document {
     /// Replay errors before and after on every record.
     pub error: ErrorEntry,
     /// Whiteness of the residual before and after.
-    pub residual: ResidualEntry,
+    pub residual: ResidualWhitenessEntry,
     /// Noise of every fitted record.
     pub noise: Vec<RecordNoiseEntry>,
     /// Augmented model.

@@ -1,4 +1,4 @@
-//! Ship, day and draughts of a trial, for documents and the first pages of reports.
+//! Ship, date and draughts of a trial, for documents and the first pages of reports.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ pub struct TrialParticularsEntry {
     /// Name of the ship.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship_name: Option<String>,
-    /// Day of the trial, as 2026-11-20.
+    /// Date of the trial, as 2026-11-20.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
     /// Draught at the fore perpendicular, m.

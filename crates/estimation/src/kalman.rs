@@ -59,7 +59,7 @@ impl<const N: usize> Step<N> {
 
 /// Sensor of a state, or of the sum of two states, with white noise.
 #[derive(Debug, Clone, Copy)]
-pub struct Sensor {
+pub struct StateSensor {
     /// Index of the state.
     pub state: usize,
     /// Index of a second state that is added.
@@ -68,7 +68,7 @@ pub struct Sensor {
     pub variance: f64,
 }
 
-impl Sensor {
+impl StateSensor {
     /// Reading without noise, for several state vectors at once.
     #[inline(always)]
     fn observe<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
@@ -121,7 +121,7 @@ pub struct System<const N: usize> {
     /// Distinct time steps.
     pub steps: Vec<Step<N>>,
     /// Distinct sensors.
-    pub sensors: Vec<Sensor>,
+    pub sensors: Vec<StateSensor>,
     /// Readings in order of time.
     pub readings: Vec<Reading>,
     /// Covariance of the state before the first reading.
@@ -138,11 +138,11 @@ impl<const N: usize> System<N> {
         variances: &[f64],
         second_state: Option<usize>,
     ) -> Self {
-        let mut sensors: Vec<Sensor> = Vec::new();
+        let mut sensors: Vec<StateSensor> = Vec::new();
         let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
             let index = sensors.iter().position(|sensor| sensor.variance == variance);
             let sensor = index.unwrap_or_else(|| {
-                sensors.push(Sensor { state: 0, second_state, variance });
+                sensors.push(StateSensor { state: 0, second_state, variance });
                 sensors.len() - 1
             });
             Reading::new((row > 0).then_some(step), sensor)
@@ -238,7 +238,7 @@ impl<const N: usize> Filter<N> {
 }
 
 /// Kalman gain of a reading; corrects the covariance by the reading.
-fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &Sensor) -> Gain<N> {
+fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &StateSensor) -> Gain<N> {
     let seen: [f64; N] = std::array::from_fn(|i| match sensor.second_state {
         Some(second_state) => covariance[i][sensor.state] + covariance[i][second_state],
         None => covariance[i][sensor.state],

@@ -151,9 +151,9 @@ impl Real for f64 {
 /// Dual number: a value with its derivatives in `DIRECTIONS` directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<const DIRECTIONS: usize> {
-    /// Value.
+    /// Value of the quantity.
     pub value: f64,
-    /// Derivatives.
+    /// Derivative of the quantity in every direction.
     pub derivatives: [f64; DIRECTIONS],
 }
 

@@ -5,7 +5,7 @@
 use nalgebra::DMatrix;
 
 use crate::kalman::whitener::Whitener;
-use crate::kalman::{Filter, MAX_STATES, Sensor, Step, System};
+use crate::kalman::{Filter, MAX_STATES, StateSensor, Step, System};
 use crate::with_states;
 
 impl<const N: usize> Step<N> {
@@ -50,7 +50,7 @@ impl<const N: usize> System<N> {
                 let (added, f) = (draw(&roots[step]), &self.steps[step].transition);
                 state = std::array::from_fn(|i| added[i] + (0..N).map(|j| f[i][j] * state[j]).sum::<f64>());
             }
-            let Sensor { state: first, second_state: beside, .. } = self.sensors[reading.sensor()];
+            let StateSensor { state: first, second_state: beside, .. } = self.sensors[reading.sensor()];
             state[first] + beside.map_or(0.0, |beside| state[beside])
         });
         read.collect()

@@ -28,7 +28,7 @@ pub struct RemovableTerm {
 }
 
 /// Maximum number of terms whose subsets are all weighted.
-pub const MAX_TERMS: usize = 12;
+pub const MAX_SUBSET_TERMS: usize = 12;
 
 /// Cholesky factor that grows row by row, with the solution of L z = Δ.
 struct GrowingFactor<'a> {
@@ -77,7 +77,7 @@ impl<'a> GrowingFactor<'a> {
 /// Log evidence plus log prior odds of every subset, relative to the full model with even odds. Bit k of the index is
 /// set if term k is included.
 ///
-/// `covariance` is the posterior covariance of the unknowns. `terms` has at most [`MAX_TERMS`] terms.
+/// `covariance` is the posterior covariance of the unknowns. `terms` has at most [`MAX_SUBSET_TERMS`] terms.
 pub fn subset_log_weights(covariance: &DMatrix<f64>, terms: &[RemovableTerm]) -> Vec<f64> {
     let mut weights = vec![0.0; 1 << terms.len()];
     let mut walk = SubsetWalk {

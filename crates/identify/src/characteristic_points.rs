@@ -29,7 +29,7 @@ use crate::settings::{SettingsError, check_condition_limit, require};
 use points::{BaseCourseOrigin, TrialPoints};
 use points_fit::AnalysedTrial;
 
-/// Selection and use of the characteristic points.
+/// Variant of the method: which points of the record are used, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
@@ -51,7 +51,7 @@ pub enum Variant {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
-    /// Selection and use of the characteristic points.
+    /// Variant of the method: which points of the record are used, and how.
     pub variant: Variant,
     /// Half width of the local fits, s; without it 7 % of half a period (equation 8: 14 %), at least three intervals.
     pub half_width_s: Option<f64>,
@@ -150,7 +150,7 @@ impl Identifier for CharacteristicPoints {
         let [gain, gain_bias, time] = fit.parameters;
         let response = FirstOrder { inverse_T: 1.0 / time, K_over_T: gain / time, rudder_bias: gain_bias / gain };
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite()) {
-            return Err(IdentifyError::NotAShip { inverse_time: response.inverse_T, gain: response.K_over_T });
+            return Err(IdentifyError::NotAShip { inverse_T: response.inverse_T, K_over_T: response.K_over_T });
         }
         let uncertainty = match fit.covariance {
             Ok((matrix, freedom)) => {

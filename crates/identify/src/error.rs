@@ -83,25 +83,25 @@ pub enum IdentifyError {
     },
     /// The record does not show that the rudder acts, as in a steady turn, which does not separate K from δ_r.
     #[error(
-        "the record does not show an effect of the rudder: K/T = {gain:.1e} ± {sd:.1e} 1/s²; give a record in which the \
-         rudder is put to both sides"
+        "the record does not show an effect of the rudder: K/T = {K_over_T:.1e} ± {sd:.1e} 1/s²; give a record in which \
+         the rudder is put to both sides"
     )]
     NoRudderEffect {
         /// K/T, 1/s².
-        gain: f64,
+        K_over_T: f64,
         /// Standard deviation of K/T, 1/s².
         sd: f64,
     },
     /// Estimate that is no ship: K/T ≤ 0 or not finite.
     #[error(
-        "the estimate is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²; expected K/T above 0; check the signs and \
-         units of rudder and heading, or give a zig-zag: a rudder that is put over once does not separate K and T"
+        "the estimate is not a ship: 1/T = {inverse_T:.3e} 1/s, K/T = {K_over_T:.3e} 1/s²; expected K/T above 0; check the signs \
+         and units of rudder and heading, or give a zig-zag: a rudder that is put over once does not separate K and T"
     )]
     NotAShip {
         /// 1/T, 1/s.
-        inverse_time: f64,
+        inverse_T: f64,
         /// K/T, 1/s².
-        gain: f64,
+        K_over_T: f64,
     },
     /// Reason why an outside estimator gave no estimate, on one printable line, from
     /// [`IdentifyError::external_estimator`].

@@ -1,5 +1,4 @@
 //! Estimate of a method: the response, its uncertainty, and the reason for stopping.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::cell::Cell;
 

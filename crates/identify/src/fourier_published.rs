@@ -30,8 +30,10 @@ use crate::settings::{SettingsError, require};
 /// Central share of the record for well-conditioned triples.
 const INTERIOR_SHARE: f64 = 0.9;
 
-/// Maximum movement, deg, of a rudder at rest, and the time, s, before and after in which it is measured.
+/// Maximum movement of a rudder at rest, deg.
 const RUDDER_REST_DEG: f64 = 0.5;
+
+/// Time before and after an instant in which the movement of the rudder is measured, s.
 const RUDDER_REST_S: f64 = 2.0;
 
 /// Combination of the estimates of the triples.
@@ -189,7 +191,7 @@ impl Identifier for FourierPublished {
         let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(answers, |a| a.rudder_bias));
         // The condition also refuses NaN.
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite() && response.inverse_T.is_finite()) {
-            return Err(IdentifyError::NotAShip { inverse_time: response.inverse_T, gain: response.K_over_T });
+            return Err(IdentifyError::NotAShip { inverse_T: response.inverse_T, K_over_T: response.K_over_T });
         }
         Ok(Estimate {
             response,

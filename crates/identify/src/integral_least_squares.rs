@@ -93,7 +93,7 @@ impl Identifier for IntegralLeastSquares {
         let solution = Solution::from_stretches(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
         if b.is_nan() || b <= 0.0 {
-            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+            return Err(IdentifyError::NotAShip { inverse_T: a, K_over_T: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
         let noise = ResidualNoise::from_stretches(&pieces, &solution);
@@ -158,7 +158,7 @@ fn warnings(trials: &[Trial], pieces: usize) -> Vec<Warning> {
             "gaps cut the record into {pieces} stretches, each with its own initial state; longest-gap-s sets the limit"
         )));
     }
-    for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
+    for trial in trials.iter().filter(|trial| trial.is_heading_integrated()) {
         warnings.push(WarningCode::HeadingFromYawRate.warning(format!(
             "the heading of {} is the integral of its yaw rate, so its noise is not white and the intervals are too narrow",
             trial.title()

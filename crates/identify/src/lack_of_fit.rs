@@ -16,7 +16,7 @@
 use estimation::column::dot;
 use ship::FirstOrder;
 use ship::first_order::{State, Transition};
-use trial::plausibility::reversals;
+use trial::plausibility::count_reversals;
 use trial::{Trial, zigzag};
 
 use crate::replay::{Replay, replay};
@@ -102,7 +102,7 @@ impl LackOfFit {
         let is_white = !robust::is_coloured(lag1, residual.len());
         // The final residual includes all of the noise; the local fits underestimate the bends of a coarse heading.
         let (noise_sd, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
-        let is_reversed = trials.iter().any(|trial| reversals(trial.rudder()) >= MIN_REVERSALS);
+        let is_reversed = trials.iter().any(|trial| count_reversals(trial.rudder()) >= MIN_REVERSALS);
         let is_identified = is_reversed && delay.abs() <= MAX_DELAY_RATIO * response.T().abs();
         let with_delay = is_identified.then_some(delayed);
         let lack = Self { residual: before, with_ship_terms: after, noise_sd, is_white, delay, with_delay };

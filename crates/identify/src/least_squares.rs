@@ -1,10 +1,11 @@
-//! Regression of the equation of motion, r' = −a r + b δ + c, on differentiated heading or on the gyro.
+//! Regression of the equation of motion, r' = −a r + b δ + c, on differentiated heading or on the yaw rate of a rate
+//! gyro.
 //!
 //! a = 1/T, b = K/T, c = b δ_r. This is the textbook method and a baseline: noise in r, a regressor, biases a towards
-//! zero (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods
-//! that do not differentiate, such as the integral and output-error methods, are better with visible noise. Sources:
-//! Ljung (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström (2007),
-//! Errors-in-variables methods in system identification, Automatica 43, 939–958.
+//! zero (errors in variables), smoothing biases it too, and the rate gyro helps only as far as its noise is small.
+//! Methods that do not differentiate, such as the integral and output-error methods, are better with visible noise.
+//! Sources: Ljung (1999), System Identification: Theory for the User, chapter 7 on linear regression; Söderström
+//! (2007), Errors-in-variables methods in system identification, Automatica 43, 939–958.
 
 use document::WarningCode;
 use nalgebra::{Matrix3, Vector3};
@@ -145,7 +146,7 @@ impl Identifier for MotionRegression {
         let solution = LeastSquares::solve(&[minus_rate, rudder, &ones], acceleration, self.settings.condition_limit)?;
         let [a, b, c] = [0, 1, 2].map(|i| solution.parameters[i]);
         if b.is_nan() || b <= 0.0 {
-            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+            return Err(IdentifyError::NotAShip { inverse_T: a, K_over_T: b });
         }
         let unscaled = Matrix3::from_fn(|i, j| solution.unscaled_covariance[(i, j)]);
         // δ_r = c/b.

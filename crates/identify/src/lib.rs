@@ -9,7 +9,7 @@
 //! | `fourier-published` | eight harmonics with a free fundamental, triples of instants (Ge, Hu, Yin and Sun) |
 //! | `fourier-projected` | the corrected form: rudder on the same basis, all samples |
 //! | `characteristic-points` | extrema and zero crossings of the heading (Nomoto 1960) |
-//! | `least-squares` | regression on differentiated heading or on the gyro |
+//! | `least-squares` | regression on differentiated heading or on the yaw rate of a rate gyro |
 //! | `integral-least-squares` | the equation of motion integrated twice |
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `maximum-likelihood` | maximum likelihood under a random yaw moment, rudder error and coloured compass error |
@@ -17,6 +17,7 @@
 //! | `recommended` | output error or maximum likelihood, by a rule made from the record |
 //!
 //! Of several estimates [`verdict`] selects the recommended one, or rejects all.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 pub mod characteristic_points;
 pub mod error;

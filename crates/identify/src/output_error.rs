@@ -21,7 +21,7 @@ use crate::likelihood::track::Track;
 use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::checked_track;
-use crate::scan::{self, FitAtTime};
+use crate::scan::{self, FitAtInverseT};
 use crate::settings::{SettingsError, check_iterations, require};
 
 /// Settings of the method.
@@ -124,7 +124,7 @@ pub(crate) const MIN_GAIN_DEVIATIONS: f64 = 2.0;
 
 /// Refined minimum of the profiled sum of squares.
 struct PolishedMinimum {
-    inverse_time: f64,
+    inverse_T: f64,
     rss: f64,
     stop: StopReason,
     iterations: usize,
@@ -156,23 +156,23 @@ impl OutputError {
     /// Ends when a step is below the tolerance, its predicted decrease is below the rounding of the sum of squares, or
     /// the valley cannot fall below the bar.
     fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<PolishedMinimum> {
-        let mut inverse_time = start;
-        let mut rss = profile.evaluate(inverse_time)?;
+        let mut inverse_T = start;
+        let mut rss = profile.evaluate(inverse_T)?;
         for iterations in 1..=goal.iterations {
-            let converged = PolishedMinimum { inverse_time, rss, stop: StopReason::Converged, iterations };
-            let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_time);
+            let converged = PolishedMinimum { inverse_T, rss, stop: StopReason::Converged, iterations };
+            let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_T);
             let hopeless = iterations > MIN_STEPS && rss - DECREASE_MARGIN * decrease > goal.bar;
-            if step.abs() <= goal.tolerance * (inverse_time.abs() + resolution) || hopeless {
+            if step.abs() <= goal.tolerance * (inverse_T.abs() + resolution) || hopeless {
                 return Some(converged);
             }
             if decrease <= ROUNDING * rss {
                 // The score is more exact than the sum of squares: the step is accepted even if the sum does not
                 // decrease.
-                let last = profile.evaluate(inverse_time + step);
-                return last.map(|rss| PolishedMinimum { inverse_time: inverse_time + step, rss, ..converged });
+                let last = profile.evaluate(inverse_T + step);
+                return last.map(|rss| PolishedMinimum { inverse_T: inverse_T + step, rss, ..converged });
             }
             let lower = (0..MAX_HALVINGS).find_map(|_| {
-                let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
+                let lower = profile.evaluate(inverse_T + step).filter(|&lower| lower < rss);
                 if lower.is_none() {
                     step *= 0.5;
                 }
@@ -180,9 +180,9 @@ impl OutputError {
             });
             // No step decreases it any further: a minimum to rounding.
             let Some(lower) = lower else { return Some(converged) };
-            (inverse_time, rss) = (inverse_time + step, lower);
+            (inverse_T, rss) = (inverse_T + step, lower);
         }
-        Some(PolishedMinimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
+        Some(PolishedMinimum { inverse_T, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
     }
 }
 
@@ -213,7 +213,7 @@ impl OutputError {
         // The scan and the first refinement only locate the valleys, for which a part of the rows suffices; the last
         // refinement uses all rows.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
-        let scan = RangeScan { fits: scan::scan_inverse_times(&thinned, &grid), grid };
+        let scan = RangeScan { fits: scan::scan_inverse_T(&thinned, &grid), grid };
         let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
         let valleys = scan.valleys();
         let mut bar = f64::INFINITY;
@@ -224,7 +224,7 @@ impl OutputError {
                 continue;
             }
             bar = place.as_ref().map_or(bar, |place| bar.min(MAX_RSS_RATIO * place.rss));
-            let start = place.map_or(start, |place| place.inverse_time);
+            let start = place.map_or(start, |place| place.inverse_T);
             if let Some(minimum) = self.polish(&mut profile, start, resolution, &self.goal())
                 && best.as_ref().is_none_or(|best| minimum.rss < best.rss)
             {
@@ -246,7 +246,7 @@ const LOCAL_MINIMA: usize = 4;
 struct RangeScan {
     /// 1/T, 1/s, increasing.
     grid: Vec<f64>,
-    fits: Vec<Option<FitAtTime>>,
+    fits: Vec<Option<FitAtInverseT>>,
 }
 
 impl RangeScan {
@@ -254,7 +254,7 @@ impl RangeScan {
     /// maximum for later minima.
     fn valleys(&self) -> Vec<f64> {
         let height = |k: usize| {
-            let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
+            let ship = self.fits.get(k).copied().flatten().filter(|fit| fit.K_over_T > 0.0);
             ship.map_or(f64::INFINITY, |fit| fit.rss)
         };
         let last = self.grid.len() - 1;
@@ -271,8 +271,8 @@ impl RangeScan {
     fn refusal(&self, condition: f64) -> IdentifyError {
         let fits = self.grid.iter().zip(&self.fits).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
         match fits.min_by(|(_, a), (_, b)| a.rss.total_cmp(&b.rss)) {
-            Some((inverse_time, FitAtTime { gain, .. })) if gain <= 0.0 => {
-                IdentifyError::NotAShip { inverse_time, gain }
+            Some((inverse_T, FitAtInverseT { K_over_T, .. })) if K_over_T <= 0.0 => {
+                IdentifyError::NotAShip { inverse_T, K_over_T }
             }
             _ => IdentifyError::Singular { condition, limit: MAX_CONDITION },
         }
@@ -280,26 +280,26 @@ impl RangeScan {
 
     /// Estimate at a minimum.
     fn estimate(&self, mut profile: Profile, minimum: PolishedMinimum) -> Result<Estimate, IdentifyError> {
-        let PolishedMinimum { inverse_time, rss, stop, iterations } = minimum;
-        profile.evaluate(inverse_time);
-        let (gain, offset) = profile.steering();
-        let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
+        let PolishedMinimum { inverse_T, rss, stop, iterations } = minimum;
+        profile.evaluate(inverse_T);
+        let (K_over_T, offset) = profile.steering();
+        let response = FirstOrder { inverse_T, K_over_T, rudder_bias: offset / K_over_T };
         // A minimum may leave the range during the refinement, or stop at its edge.
         let fastest = self.grid[self.grid.len() - 1];
-        let at_bound = inverse_time.abs() >= fastest * (1.0 - BOUND_TOLERANCE);
+        let at_bound = inverse_T.abs() >= fastest * (1.0 - BOUND_TOLERANCE);
         // A rudder of the wrong sign looks like a course-unstable ship with a vanishing T.
         if at_bound && let refused @ IdentifyError::NotAShip { .. } = self.refusal(f64::INFINITY) {
             return Err(refused);
         }
-        let information = profile.information(inverse_time);
+        let information = profile.information(inverse_T);
         let observations = profile.observations();
         let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trials()) as f64;
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) = invert(&information, MAX_CONDITION).map_err(|condition| self.refusal(condition))?;
         let white = response_covariance(&(inverse * (rss / freedom)), &response, freedom);
-        let gain_sd = white.matrix[(1, 1)].sqrt();
-        if gain < MIN_GAIN_DEVIATIONS * gain_sd {
-            return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
+        let sd = white.matrix[(1, 1)].sqrt();
+        if K_over_T < MIN_GAIN_DEVIATIONS * sd {
+            return Err(IdentifyError::NoRudderEffect { K_over_T, sd });
         }
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (evaluations, total) = (profile.evaluations, profile.total_sum_of_squares());

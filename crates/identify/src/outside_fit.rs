@@ -1,5 +1,4 @@
 //! K, T and δ_r of an outside estimator, and their conversion to an [`Estimate`].
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use document::{Warning, WarningCode};
 use nalgebra::{Matrix3, Vector3};
@@ -50,7 +49,7 @@ impl OutsideFit {
         let response = FirstOrder::from_indices(K, T, rudder_bias);
         let FirstOrder { inverse_T, K_over_T, .. } = response;
         if !(inverse_T.is_finite() && K_over_T.is_finite() && K_over_T > 0.0) {
-            return Err(IdentifyError::NotAShip { inverse_time: inverse_T, gain: K_over_T });
+            return Err(IdentifyError::NotAShip { inverse_T, K_over_T });
         }
         if !rudder_bias.is_finite() {
             return Err(IdentifyError::external_estimator("the rudder bias is not a finite number"));

@@ -69,22 +69,22 @@ impl Profile {
     }
 
     /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` if the columns are dependent or b ≤ 0.
-    pub fn evaluate(&mut self, inverse_time: f64) -> Option<f64> {
+    pub fn evaluate(&mut self, inverse_T: f64) -> Option<f64> {
         match self.last {
-            Some((point, rss)) if point == inverse_time => rss,
+            Some((point, rss)) if point == inverse_T => rss,
             _ => {
                 self.evaluations += 1;
-                let rss = self.fit(inverse_time);
-                self.last = Some((inverse_time, rss));
+                let rss = self.fit(inverse_T);
+                self.last = Some((inverse_T, rss));
                 rss
             }
         }
     }
 
-    fn fit(&mut self, inverse_time: f64) -> Option<f64> {
+    fn fit(&mut self, inverse_T: f64) -> Option<f64> {
         let (mut products, mut moment) = (Matrix2::zeros(), Vector2::zeros());
         for part in &mut self.parts {
-            part.project_columns(inverse_time);
+            part.project_columns(inverse_T);
             part.project_heading();
             let [[gg, gh, gy], [_, hh, hy], _] = gram([&part.columns.rudder, &part.columns.constant, &part.heading]);
             products += Matrix2::new(gg, gh, gh, hh);
@@ -104,8 +104,8 @@ impl Profile {
     }
 
     /// Kaufman's step of 1/T from the last evaluated point.
-    pub fn newton_step(&mut self, inverse_time: f64) -> NewtonStep {
-        let information = self.information(inverse_time);
+    pub fn newton_step(&mut self, inverse_T: f64) -> NewtonStep {
+        let information = self.information(inverse_T);
         let score: f64 = self.parts.iter().map(|part| dot(&part.sensitivity, &part.residual)).sum();
         let products = Matrix2::new(information[(1, 1)], information[(1, 2)], information[(2, 1)], information[(2, 2)]);
         let cross = Vector2::new(information[(0, 1)], information[(0, 2)]);
@@ -117,11 +117,11 @@ impl Profile {
 
     /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the last evaluated point; times 1/σ² it is the Fisher
     /// information.
-    pub fn information(&mut self, inverse_time: f64) -> Matrix3<f64> {
+    pub fn information(&mut self, inverse_T: f64) -> Matrix3<f64> {
         let [b, q] = self.steering.into();
         let mut information = Matrix3::zeros();
         for part in &mut self.parts {
-            information += part.information(inverse_time, &part.coefficients(b, q));
+            information += part.information(inverse_T, &part.coefficients(b, q));
         }
         information
     }
@@ -169,8 +169,8 @@ impl Profile {
 }
 
 impl TrialColumns {
-    fn project_columns(&mut self, inverse_time: f64) {
-        self.track.fill_columns(inverse_time, &mut self.columns);
+    fn project_columns(&mut self, inverse_T: f64) {
+        self.track.fill_columns(inverse_T, &mut self.columns);
         let MotionColumns { homogeneous, rudder, constant, .. } = &mut self.columns;
         let mean = sum(homogeneous) / homogeneous.len() as f64;
         homogeneous.iter_mut().for_each(|x| *x -= mean);
@@ -189,21 +189,21 @@ impl TrialColumns {
     }
 
     /// Information XᵀX of (1/T, b, b δ_r), with the columns ∂ψ/∂a, G and H projected off the initial state.
-    fn information(&mut self, inverse_time: f64, coefficients: &Coefficients) -> Matrix3<f64> {
-        self.track.sensitivity(inverse_time, coefficients, &mut self.sensitivity);
+    fn information(&mut self, inverse_T: f64, coefficients: &Coefficients) -> Matrix3<f64> {
+        self.track.sensitivity(inverse_T, coefficients, &mut self.sensitivity);
         project(&self.columns.homogeneous, &mut self.sensitivity);
         Matrix3::from(gram([&self.sensitivity, &self.columns.rudder, &self.columns.constant]))
     }
 
     /// Coefficients of the track for given steering: the projected-out components give the anchor.
-    fn coefficients(&self, gain: f64, offset: f64) -> Coefficients {
+    fn coefficients(&self, K_over_T: f64, offset: f64) -> Coefficients {
         let [rudder, constant, heading] = self.removed;
         let (mean, length) = self.homogeneous;
         // φ₁ = mean + length · unit.
-        let along = heading.share - gain * rudder.share - offset * constant.share;
+        let along = heading.share - K_over_T * rudder.share - offset * constant.share;
         let yaw_rate = if length > 0.0 { along / length } else { 0.0 };
-        let level = heading.mean - gain * rudder.mean - offset * constant.mean;
-        Coefficients { anchor: State { heading: level - yaw_rate * mean, yaw_rate }, gain, offset }
+        let level = heading.mean - K_over_T * rudder.mean - offset * constant.mean;
+        Coefficients { anchor: State { heading: level - yaw_rate * mean, yaw_rate }, K_over_T, offset }
     }
 }
 

@@ -138,7 +138,7 @@ mod tests {
     use document::{HeadingNoise, RandomMoment};
     use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
     use ship::FirstOrder;
-    use trial::{Conditions, DeclaredWeather, Noise};
+    use trial::{DeclaredConditions, DeclaredWeather, Noise};
 
     fn nearest(trials: &[Trial]) -> Estimate {
         output_error::Settings::default().build().expect("defaults").identify(trials).expect("a fit")
@@ -210,7 +210,7 @@ mod tests {
     /// A moment that no term of a ship explains is random, unless the record declares a calm.
     #[test]
     fn a_declared_calm_excludes_a_random_moment() {
-        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        let calm = DeclaredConditions { weather: Some(DeclaredWeather::Calm), ..DeclaredConditions::default() };
         let outcome = |trial: Trial| {
             let trials = [trial];
             let base = nearest(&trials);

@@ -19,11 +19,11 @@ const MAX_CONDITION: f64 = 1e9;
 pub struct Replay {
     /// Time of every row between the first and last observed heading, s.
     pub time: Vec<f64>,
-    /// Heading of these rows, rad.
+    /// Replayed heading in these rows, rad.
     pub heading: Vec<f64>,
-    /// Yaw rate of these rows, rad/s.
+    /// Replayed yaw rate in these rows, rad/s.
     pub yaw_rate: Vec<f64>,
-    /// Measured minus replayed heading of these rows, rad; NaN if none was measured.
+    /// Measured minus replayed heading in these rows, rad; NaN where none was measured.
     pub residual: Vec<f64>,
 }
 
@@ -58,7 +58,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
         .heading
         .iter()
         .zip(forced)
-        .map(|(psi, (g, h))| psi - coefficients.gain * g - coefficients.offset * h)
+        .map(|(psi, (g, h))| psi - coefficients.K_over_T * g - coefficients.offset * h)
         .collect();
     if free.iter().any(|value| !value.is_finite()) {
         return None;
@@ -127,7 +127,7 @@ mod tests {
         let heading = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
         let trial = record("one", time, heading, rudder);
-        let replayed = |gain| replay(&trial, &FirstOrder { inverse_T: 0.1, K_over_T: gain, rudder_bias: 0.0 });
+        let replayed = |K_over_T| replay(&trial, &FirstOrder { inverse_T: 0.1, K_over_T, rudder_bias: 0.0 });
         assert!(replayed(0.01).is_some_and(|replay| replay.rms() > 0.0 && replay.observed().count() == 100));
         assert_eq!(replayed(1e170), None);
     }

@@ -18,28 +18,28 @@ type Lanes = [f64; LANES];
 
 /// Best fit of a ship with a given 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FitAtTime {
+pub(crate) struct FitAtInverseT {
     /// Sum of squares, rad².
     pub rss: f64,
     /// b = K/T, 1/s², of any sign.
-    pub gain: f64,
+    pub K_over_T: f64,
 }
 
-/// Best fit for every value of `inverse_time` (1/s), in increasing order; `None` if the columns are dependent.
+/// Best fit for every value of `inverse_T` (1/s), in increasing order; `None` if the columns are dependent.
 ///
 /// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
 /// [thinned](Track::thinned) tracks.
-pub(crate) fn scan_inverse_times(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<FitAtTime>> {
+pub(crate) fn scan_inverse_T(tracks: &[Track], inverse_T: &[f64]) -> Vec<Option<FitAtInverseT>> {
     let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
-    let mut fits = Vec::with_capacity(inverse_time.len());
+    let mut fits = Vec::with_capacity(inverse_T.len());
     // The columns of one block have their anchors at the same end of the record.
-    for same_side in inverse_time.chunk_by(|&a, &b| is_backward(a) == is_backward(b)) {
+    for same_side in inverse_T.chunk_by(|&a, &b| is_backward(a) == is_backward(b)) {
         for block in same_side.chunks(LANES) {
             let values: Lanes = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
             let mut products = [Products::default(); LANES];
             for (track, heading) in tracks.iter().zip(&centred) {
-                let trial_products = estimation::lanes::run(Sweep { track, heading, inverse_time: &values });
+                let trial_products = estimation::lanes::run(Sweep { track, heading, inverse_T: &values });
                 products.iter_mut().zip(trial_products).for_each(|(sum, term)| sum.add(&term));
             }
             fits.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
@@ -76,11 +76,11 @@ impl Products {
     }
 
     /// Fit, for headings whose squares about their means add up to `squares`.
-    fn fit(&self, squares: f64) -> Option<FitAtTime> {
+    fn fit(&self, squares: f64) -> Option<FitAtInverseT> {
         let moment = Vector2::new(self.g_psi, self.h_psi);
         let steering = solve2(&Matrix2::new(self.gg, self.gh, self.gh, self.hh), &moment)?;
         let rss = squares - self.explained - steering.dot(&moment);
-        rss.is_finite().then_some(FitAtTime { rss, gain: steering[0] })
+        rss.is_finite().then_some(FitAtInverseT { rss, K_over_T: steering[0] })
     }
 }
 
@@ -88,7 +88,7 @@ impl Products {
 struct Sweep<'a> {
     track: &'a Track,
     heading: &'a [f64],
-    inverse_time: &'a Lanes,
+    inverse_T: &'a Lanes,
 }
 
 /// Σ over rows of columns and of products of columns, by lane. f, g, h denote φ₁, G, H.
@@ -129,22 +129,23 @@ impl Sums {
 impl estimation::lanes::Kernel for Sweep<'_> {
     type Output = [Products; LANES];
 
-    /// Recursions of [`Track::fill_columns`] in every lane. The anchor row has only zeros and is left out.
+    /// Sums over the rows of a track, by the recursions of [`Track::fill_columns`] in every lane. The anchor row has
+    /// only zeros and is left out.
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let Self { track, heading, inverse_time } = self;
+        let Self { track, heading, inverse_T } = self;
         let mut sums = Sums::default();
         let (mut f, mut g, mut h) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut f_rate, mut g_rate, mut h_rate) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
         let mut duration = 0.0;
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let rudder = &track.rudder;
-        let backward = is_backward(inverse_time[0]);
+        let backward = is_backward(inverse_T[0]);
         for TrackStep { from_row, to_row, duration: step, rudder_rate: rate, .. } in track.steps(backward) {
             if durations_differ(duration, step) {
                 duration = step;
                 for lane in 0..LANES {
-                    let transition = Transition::new(inverse_time[lane], step);
+                    let transition = Transition::new(inverse_T[lane], step);
                     (decay[lane], phi1[lane]) = (transition.decay, transition.phi1);
                     (phi2[lane], phi3[lane]) = (transition.phi2, transition.phi3);
                 }
@@ -197,13 +198,13 @@ mod tests {
         ];
         let grid: Vec<f64> = (-15..=15).map(|k| 0.01 * f64::from(k)).collect();
         let mut profile = Profile::new(tracks.to_vec());
-        for (&a, fit) in grid.iter().zip(scan_inverse_times(&tracks, &grid)) {
+        for (&a, fit) in grid.iter().zip(scan_inverse_T(&tracks, &grid)) {
             let fit = fit.expect("the columns are independent");
             if let Some(rss) = profile.evaluate(a) {
                 assert_relative_eq!(fit.rss, rss, max_relative = 1e-8);
-                assert_relative_eq!(fit.gain, profile.steering().0, max_relative = 1e-7);
+                assert_relative_eq!(fit.K_over_T, profile.steering().0, max_relative = 1e-7);
             } else {
-                assert!(fit.gain <= 0.0);
+                assert!(fit.K_over_T <= 0.0);
             }
         }
     }
@@ -213,11 +214,11 @@ mod tests {
         let track = track(Case { noise_deg: 0.5, ..Case::default() });
         let heading = centred(&track.heading);
         for sign in [1.0, -1.0] {
-            let inverse_time = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
+            let inverse_T = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
             let results = estimation::lanes::on_every_instruction_set(|| Sweep {
                 track: &track,
                 heading: &heading,
-                inverse_time: &inverse_time,
+                inverse_T: &inverse_T,
             });
             assert!(results.iter().all(|(_, products)| products == &results[0].1), "{results:?}");
         }

@@ -1,6 +1,5 @@
 //! Zig-zag records of an exact first-order ship, for tests of this crate only: there is no integration error, so that a
 //! test measures only the method. The rudder is recorded at the rows and linear between them, as in a real record.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::collections::BTreeMap;
 
@@ -8,7 +7,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::from_deg;
 use ship::first_order::{FirstOrder, State, Transition};
 use statrs::distribution::{ContinuousCDF, Normal};
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, RecordOrigin, Trial};
 
 /// Beginning of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -206,14 +205,14 @@ pub fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -
     from_channels(name, time, [(Channel::Heading, heading), (Channel::Rudder, rudder)].into())
 }
 
-/// Record of these columns with a gyro, rad/s.
+/// Record of these columns with a rate gyro, whose yaw rate is in rad/s.
 pub fn record_with_gyro(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>, yaw_rate: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::YawRate, yaw_rate)];
     from_channels("gyro", time, channels.into())
 }
 
 fn from_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64>>) -> Trial {
-    let origin = Origin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
     Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
 }
 

@@ -17,7 +17,7 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use simulate::{Manoeuvre, Purpose, StreamKey};
+use simulate::{Manoeuvre, RngPurpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
@@ -58,7 +58,7 @@ pub struct CorrectedFigure {
     /// R = T F/B.
     #[serde(flatten)]
     pub result: PredictionInterval,
-    /// Ratio F/B.
+    /// Factor F/B on the measured figure.
     pub factor: PredictionInterval,
     /// F: predicted by the model at the target loading.
     pub full: PredictionInterval,
@@ -132,7 +132,9 @@ type Draws = Vec<Option<SampleResult>>;
 struct PairedManoeuvre {
     /// Maximum rudder, rad.
     rudder: f64,
+    /// Results of the model at the target loading.
     full: Draws,
+    /// Results of the model in the condition of the trial.
     trial: Draws,
     /// Characteristics of the record.
     shown: Vec<(&'static str, Quantity)>,
@@ -182,7 +184,7 @@ pub fn correct(
         }
     }
     let readings: Vec<f64> = parallel_draws(draws, |replicate| {
-        StreamKey { seed: READING, cell: 0, replicate }.rng(Purpose::Heading).sample(StandardNormal)
+        StreamKey { seed: READING, cell: 0, replicate }.rng(RngPurpose::Heading).sample(StandardNormal)
     });
     let corrected = |&(name, measured): &(&str, Quantity)| {
         Some((name.to_owned(), ratio(name, measured, [&paired.full, &paired.trial], &readings)?))
@@ -229,7 +231,7 @@ fn turned(
         let mut ship = mixture.draw_ship(number, &UncertaintySource::ALL);
         // Both ships start with the yaw rate of the record.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
-        let standard_normal: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
+        let standard_normal: f64 = key.rng(RngPurpose::Heading).sample(StandardNormal);
         ship.yaw_rate = rate.0 + rate.1 * standard_normal;
         let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.whole_figures(&passage);

@@ -100,8 +100,8 @@ pub struct ModelWeight {
     pub weight: f64,
 }
 
-/// Names of files for a page, separated by commas: without their folders, which are of one machine; with the last
-/// folder where names are alike.
+/// Names of files for a page, separated by commas, without their folders, which exist on one machine only; with the
+/// last folder if several files have the same name.
 pub fn file_names<'a>(files: impl IntoIterator<Item = &'a String, IntoIter: Clone>) -> String {
     fn end(file: &str, parts: usize) -> &str {
         let start = file.rmatch_indices(['/', '\\']).nth(parts - 1).map_or(0, |(place, _)| place + 1);

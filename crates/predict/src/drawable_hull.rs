@@ -23,8 +23,9 @@ pub(crate) struct HullSampler {
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
     root: DMatrix<f64>,
-    /// Hull of the trials, and the gain G on its coefficients.
-    from: Option<(Box<HullSampler>, DMatrix<f64>)>,
+    /// Sampler of the hull in the condition of the trials, and the gain G by which shifts of its coefficients move
+    /// those of this hull; `None` unless this hull is at another loading.
+    trial_hull: Option<(Box<HullSampler>, DMatrix<f64>)>,
 }
 
 /// Checks a hull; fails for an unknown form, wrong coefficients, or a matrix that is not a covariance.
@@ -56,11 +57,11 @@ impl HullSampler {
         let root = covariance_root(
             stored.trial_hull.as_ref().map_or(&stored.covariance, |from| &from.conditional_covariance),
         )?;
-        let from = stored
+        let trial_hull = stored
             .trial_hull
             .as_ref()
             .map(|from| Ok::<_, PredictError>((Box::new(Self::new(&from.hull)?), from.gain.clone())));
-        let hull = Self { stored: stored.clone(), form, coefficients, root, from: from.transpose()? };
+        let hull = Self { stored: stored.clone(), form, coefficients, root, trial_hull: trial_hull.transpose()? };
         hull.with_coefficients(&stored.values()).ok_or_else(|| stored.unknown_model_error())?;
         Ok(hull)
     }
@@ -85,7 +86,7 @@ impl HullSampler {
     /// hull of the trials, which this hull follows, and `independent` the part that is independent of the trials.
     pub fn sample(&self, rng: &mut impl rand::Rng, independent: &mut impl rand::Rng) -> Vec<f64> {
         let mean = DVector::from(self.stored.values());
-        let values = match &self.from {
+        let values = match &self.trial_hull {
             None => self.values(rng, &mean),
             Some((from, gain)) => {
                 let of_trial = DVector::from(from.stored.values());

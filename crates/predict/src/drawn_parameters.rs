@@ -2,7 +2,7 @@
 
 use document::IdentifiedShip;
 use ship::ResponseModel;
-use simulate::{Purpose, StreamKey};
+use simulate::{RngPurpose, StreamKey};
 
 use crate::error::PredictError;
 use crate::mixture::{
@@ -90,7 +90,7 @@ impl EstimateSampler {
     pub fn sample(&self, number: u64) -> DrawnEstimate {
         let share = (0.5 + number as f64 * GOLDEN_STEP).fract();
         let structure = structure_at_probability(&self.structures, share).unwrap_or(&self.structures[0]);
-        let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(Purpose::Specification);
+        let mut rng = StreamKey { seed: self.seed, cell: 0, replicate: number }.rng(RngPurpose::Specification);
         let (name, parameters) = named(&structure.model, &structure.sample(&mut rng));
         DrawnEstimate { structure: name, weight: structure.weight, parameters }
     }

@@ -16,7 +16,7 @@ use serde_json::Value;
 use ship::Particulars;
 use simulate::{Manoeuvre, Side};
 use trial::imo::CriterionUnit;
-use trial::{Conditions, Loading};
+use trial::{DeclaredConditions, Loading};
 
 use crate::imo::{IMO_LIMITS, Limit};
 use crate::interval::PredictionInterval;
@@ -36,7 +36,7 @@ pub const MAX_DECIMALS: usize = 2;
 
 /// Form of MSC/Circ.1053.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Form {
+pub struct ImoForm {
     /// Entries in the order of the form.
     pub entries: Vec<ImoFormEntry>,
     /// Remarks: unmet or unknown conditions, untested sides, records outside the form.
@@ -53,7 +53,7 @@ pub fn manoeuvres() -> Vec<Manoeuvre> {
 /// Declarations of a file, with the length of the ship, m.
 struct Declared<'a> {
     file: &'a str,
-    form: &'a Conditions,
+    form: &'a DeclaredConditions,
     length: Option<f64>,
 }
 
@@ -119,15 +119,16 @@ pub fn fill<'a>(
     particulars: Option<Particulars>,
     models: &str,
     records: &[FormRecord<'a>],
-    declared: Option<(&'a str, &'a Conditions)>,
-) -> Form {
+    declared: Option<(&'a str, &'a DeclaredConditions)>,
+) -> ImoForm {
     let tested: Vec<TestedManoeuvre> = records.iter().map(TestedManoeuvre::from_record).collect();
     let length = |particulars: Option<Particulars>| particulars.map(|ship| ship.length);
     let of_record = |FormRecord { trial, .. }: &FormRecord<'a>| {
         let form = trial.conditions();
         Declared { file: record_file(trial), form, length: length(form.particulars.or(trial.particulars())) }
     };
-    let of_file = |(file, form): (&'a str, &'a Conditions)| Declared { file, form, length: length(form.particulars) };
+    let of_file =
+        |(file, form): (&'a str, &'a DeclaredConditions)| Declared { file, form, length: length(form.particulars) };
     let declarations: Vec<Declared> = records.iter().map(of_record).chain(declared.map(of_file)).collect();
     let scale = if predictions.is_empty() { "scale of the records" } else { "scale of the prediction" };
     let field = |&(section, name, unit, value): &Field| {
@@ -167,7 +168,7 @@ pub fn fill<'a>(
     if entries.iter().any(|entry| entry.extrapolated == Some(true)) {
         remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
     }
-    Form { entries, remarks }
+    ImoForm { entries, remarks }
 }
 
 /// Value and source of a characteristic that a record shows: a record at full load or with a correction is preferred to
@@ -286,7 +287,7 @@ mod tests {
     use ship::angle::from_deg;
     use trial::Trial;
 
-    fn record(mixture: &ShipMixture, kind: &str, conditions: Conditions) -> Trial {
+    fn record(mixture: &ShipMixture, kind: &str, conditions: DeclaredConditions) -> Trial {
         let trial = testing::record(mixture, kind, 0, from_deg(0.05), 0.5);
         trial.with_particulars(mixture.particulars().expect("made up")).with_conditions(conditions)
     }
@@ -295,15 +296,15 @@ mod tests {
         manoeuvres().iter().map(|kind| mixture.predict(kind, 60, false).expect("sails")).collect()
     }
 
-    fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a ImoFormEntry {
+    fn entry<'a>(form: &'a ImoForm, section: &str, name: &str, side: Option<&str>) -> &'a ImoFormEntry {
         let is_it = |entry: &&ImoFormEntry| {
             entry.section.contains(section) && entry.field == name && entry.side.as_deref() == side
         };
         form.entries.iter().find(is_it).unwrap_or_else(|| panic!("{section} {name}: {form:?}"))
     }
 
-    fn calm(loading: Loading) -> Conditions {
-        Conditions {
+    fn calm(loading: Loading) -> DeclaredConditions {
+        DeclaredConditions {
             ship_type: Some("training ship".into()),
             beam: Some(15.0),
             draught: Some(5.0),
@@ -314,7 +315,7 @@ mod tests {
             wind_beaufort: Some(2),
             sea_state: Some(6),
             declared_loading: Some(loading),
-            ..Conditions::default()
+            ..DeclaredConditions::default()
         }
     }
 
@@ -339,7 +340,7 @@ mod tests {
         let with = |correction| {
             fill(&all, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
         };
-        let of = |form: &Form| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
+        let of = |form: &ImoForm| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
         assert!(corrected.source.contains("corrected by F/B = 0."), "{corrected:?}");
         let form = with(Some(&correction));
@@ -355,7 +356,7 @@ mod tests {
     fn other_manoeuvres_are_reported() {
         let ship = testing::mixture(testing::identified_ship());
         let remarks = |kind: &str| {
-            let trial = record(&ship, kind, Conditions::default());
+            let trial = record(&ship, kind, DeclaredConditions::default());
             let form = fill(
                 &predictions(&ship),
                 ship.particulars(),
@@ -373,7 +374,7 @@ mod tests {
             "{circle}"
         );
         assert!(remarks("zig-zag:10/20").contains("a zig-zag of 10/20"));
-        let declared = Conditions { ship_type: Some("ferry".into()), ..Conditions::default() };
+        let declared = DeclaredConditions { ship_type: Some("ferry".into()), ..DeclaredConditions::default() };
         let form = fill(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));
         assert_eq!(entry(&form, "ship", "ship type", None).value, Some("ferry".into()));
         assert_eq!(entry(&form, "ship", "L/V", None).value, None);

@@ -37,20 +37,25 @@ pub(crate) const ZIG_ZAG_10_10: FormManoeuvre = "zig-zag 10/10";
 pub(crate) const ZIG_ZAG_20_20: FormManoeuvre = "zig-zag 20/20";
 pub(crate) const TURNING_CIRCLE_35: FormManoeuvre = "turning-circle 35";
 
-/// Rudder angle of the turning circle and its tolerance, rad. The resolution also allows the maximum rudder angle,
-/// which no model gives.
+/// Rudder angle of the turning circle, rad. The resolution also allows the maximum rudder angle, which no model gives.
 pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
+
+/// Tolerance of the rudder angle of the turning circle, rad.
 pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// Limit of IMO resolution MSC.137(76) on a figure of merit.
 pub(crate) struct Limit {
-    /// Name of the limit, and its section and field in the form.
+    /// Name of the limit.
     pub name: &'static str,
+    /// Section of the form.
     pub section: &'static str,
+    /// Field of the form.
     pub field: &'static str,
-    /// Manoeuvre and figure of merit.
+    /// Manoeuvre.
     pub manoeuvre: FormManoeuvre,
+    /// Identifier of the figure of merit.
     pub figure: &'static str,
+    /// Unit of the limit.
     pub unit: CriterionUnit,
     /// Maximum value; `None` if it depends on an unknown L/V.
     pub value: fn(Option<Particulars>) -> Option<f64>,

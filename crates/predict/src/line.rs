@@ -5,6 +5,7 @@
 pub(crate) struct StraightLine {
     /// Mean abscissa and mean ordinate.
     pub mean: [f64; 2],
+    /// Slope.
     pub slope: f64,
     /// Sum of squares of the abscissae about their mean.
     spread: f64,

@@ -11,9 +11,11 @@ const STEP: f64 = PI / 60.0;
 /// Change of heading at which a track ends, rad: one and a half circles.
 pub(crate) const MAX_TRACK_RAD: f64 = 3.0 * PI;
 
-/// Track of a turn, a position for every heading; the heading grows with the turn from zero at the execute, rad.
+/// Track of a turn from its execute on, a position for every heading.
 pub(crate) struct TurnTrack<'a> {
+    /// Heading, rad.
     pub heading: &'a [f64],
+    /// Positions north and east, in one unit of length.
     pub track: &'a [[f64; 2]],
 }
 

@@ -10,7 +10,7 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use ship::vessel::scaled::ScaledHull;
 use ship::{Regressor, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Wind};
-use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
+use simulate::{Disturbances, RngPurpose, SteeringGear, StreamKey};
 
 use crate::drawable_hull::HullSampler;
 use crate::error::PredictError;
@@ -173,14 +173,14 @@ impl ShipMixture {
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.drawn_structure(number) } else { self.likeliest() };
         let stored = &self.files[part.file];
-        let mut rng = key.rng(Purpose::Specification);
+        let mut rng = key.rng(RngPurpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
             true => part.sample(&mut rng),
             false => part.stored.parameters.clone(),
         };
         // A negative dead time is an error of the clock; a ship does not respond before its rudder moves.
         part.dead_times.iter().for_each(|place| values[*place] = values[*place].max(0.0));
-        let mut normals = key.indexed_rng(Purpose::Specification, 1);
+        let mut normals = key.indexed_rng(RngPurpose::Specification, 1);
         let [gear_normal, approach_normal, start_normal]: [f64; 3] =
             std::array::from_fn(|_| normals.sample(StandardNormal));
         let random_part = |source, value: f64| if has(source) { value } else { 0.0 };
@@ -191,9 +191,9 @@ impl ShipMixture {
         // A hull converted to another loading shares the sampled errors of the trial hull (stream 2) and adds
         // independent conversion errors (stream 3).
         let of_trial = StreamKey { seed: u64::from(self.is_independent && !self.shares_trial_errors), ..key };
-        let mut rng = of_trial.indexed_rng(Purpose::Specification, 2);
+        let mut rng = of_trial.indexed_rng(RngPurpose::Specification, 2);
         let coefficients = part.hull.as_ref().map(|hull| match has(UncertaintySource::Parameters) {
-            true => hull.sample(&mut rng, &mut key.indexed_rng(Purpose::Specification, 3)),
+            true => hull.sample(&mut rng, &mut key.indexed_rng(RngPurpose::Specification, 3)),
             false => hull.stored.values(),
         });
         let hull = part.hull.as_ref().zip(coefficients.as_ref()).map(|(hull, drawn)| hull.hull_or_most_probable(drawn));
@@ -271,7 +271,7 @@ fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
 impl StructureSampler {
     pub(crate) fn new(stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
         let (weight, model) = (checked(weight, stored.weight)?, stored.model()?);
-        let (root, dead_times) = (covariance_root(&stored.covariance)?, stored.dead_times(&model));
+        let (root, dead_times) = (covariance_root(&stored.covariance)?, stored.dead_time_indices(&model));
         Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
     }
 

@@ -27,7 +27,7 @@ const MIN_COMPLETED_SHARE: f64 = 0.5;
 
 /// Tolerance of the range of the records: a rudder overshoots its order, and the maximum rate comes from a single
 /// record.
-pub const TOLERANCE: f64 = 1.05;
+pub const RANGE_FACTOR: f64 = 1.05;
 
 /// Predicted figure of merit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -229,7 +229,7 @@ impl ShipMixture {
         let end = |value: fn(&ValidityRange) -> f64| {
             self.files().iter().map(|ship| value(&ship.validity_range)).fold(0.0, f64::max)
         };
-        rudder > TOLERANCE * end(|seen| seen.rudder_rad) || rate > TOLERANCE * end(|seen| seen.yaw_rate_rad_s)
+        rudder > RANGE_FACTOR * end(|seen| seen.rudder_rad) || rate > RANGE_FACTOR * end(|seen| seen.yaw_rate_rad_s)
     }
 }
 

@@ -9,8 +9,8 @@ use ship::Polyline;
 use ship::angle::to_deg;
 use simulate::disturbance::Wind;
 use simulate::motion::Current;
-use simulate::{Manoeuvre, Purpose, StreamKey};
-use trial::{Origin, Quantity, Trial, ZigZag as Measured};
+use simulate::{Manoeuvre, RngPurpose, StreamKey};
+use trial::{Quantity, RecordOrigin, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::{self, Characteristics};
@@ -74,11 +74,11 @@ pub struct RecordReplay {
     pub measured: Vec<f64>,
 }
 
-/// File of a record, as the user named it.
+/// File of a measured record, as the user named it; the name of a simulated record.
 pub fn record_file(trial: &Trial) -> &str {
     match trial.origin() {
-        Origin::Measured { file, .. } => file,
-        Origin::Simulated { .. } => trial.name(),
+        RecordOrigin::Measured { file, .. } => file,
+        RecordOrigin::Simulated { .. } => trial.name(),
     }
 }
 
@@ -125,7 +125,7 @@ impl ShipMixture {
         let Some([first, rate]) = ships.initial_motion(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let mut ship = ships.draw_ship(number, sources);
-            let mut rng = ship.key.rng(Purpose::Heading);
+            let mut rng = ship.key.rng(RngPurpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let noise_factor = if sources.is_empty() { 0.0 } else { 1.0 };
             ship.yaw_rate = rate.0 + noise_factor * rate.1 * of_rate;
@@ -238,7 +238,7 @@ type ByName = IndexMap<String, ComparedFigure>;
 fn compared(drawn: &[Characteristics], shown: impl Fn(&str) -> Option<Quantity>) -> ByName {
     let figure = |(number, &name): (usize, &&'static str)| {
         let Quantity { value: measured, sd, .. } = shown(name)?;
-        let mut rng = StreamKey::default().indexed_rng(Purpose::Heading, 1 + number as u32);
+        let mut rng = StreamKey::default().indexed_rng(RngPurpose::Heading, 1 + number as u32);
         let mut read = |value: f64| value + sd.unwrap_or(0.0) * rng.sample::<f64, _>(StandardNormal);
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[name].map(&mut read)).collect();
         let interval =
@@ -330,7 +330,7 @@ mod tests {
         let time: Vec<f64> = (0..100).map(f64::from).collect();
         let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
         let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
-        let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
+        let origin = RecordOrigin::Measured { file: "made up".into(), sha256: String::new() };
         let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
         let of = |ship: IdentifiedShip| testing::mixture(ship).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
         let met = of(ship.clone()).disturbances.wind.expect("a wind");

@@ -70,9 +70,10 @@ pub(crate) fn row_interval(timescale: f64) -> f64 {
     (timescale / ROWS_PER_TIMESCALE).clamp(2e-3, 900.0)
 }
 
-/// Maximum time step of the weather: in s, and relative to its correlation time, so that the moment is within 2 % of
-/// the process.
+/// Maximum time step of the weather, s.
 const MAX_CELL_S: f64 = 60.0;
+
+/// Maximum time step of the weather as a share of its correlation time: the moment is then within 2 % of the process.
 const MAX_CORRELATION_SHARE: f64 = 0.5;
 
 /// Ship of the simulation from a drawn ship.

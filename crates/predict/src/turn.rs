@@ -5,7 +5,7 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::Polyline;
 pub use simulate::motion::Current;
-use simulate::{Purpose, StreamKey};
+use simulate::{RngPurpose, StreamKey};
 use trial::{Channel, Trial, ZigZag};
 
 use crate::figures::{self, Characteristics};
@@ -33,7 +33,7 @@ pub fn estimated_current(trial: &Trial) -> Option<Current> {
     let rows: Vec<usize> = trial.observed_rows().filter(has_position).filter(is_turning).collect();
     let at_rows = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
-    simulate::motion::current(&at_rows(trial.time()), &at_rows(trial.heading()), &track)
+    simulate::motion::estimate_current(&at_rows(trial.time()), &at_rows(trial.heading()), &track)
 }
 
 /// Record with the current removed from the positions, and that current: the given one, or else the current that the
@@ -47,7 +47,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
 
 /// Motion of a drawn ship with a random error of the removed current, from the first row on.
 pub(crate) fn with_current_error(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
-    let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed_rng(Purpose::Specification, 3);
+    let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed_rng(RngPurpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
     let period = passage.period;
@@ -129,18 +129,19 @@ impl HeldTurn {
         figures
     }
 
-    /// Track from the execute on, where the course is north: north and east in ship lengths, at most one and a half
-    /// circles. `None` if there is no track.
+    /// Track from the execute on, turned so that the heading at the execute points north: north and east in ship
+    /// lengths, up to a heading change of one and a half circles. `None` without a track, or if the run ends before the
+    /// execute.
     fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
         let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
         let first = self.first_row(passage);
-        let (begin, course) = (*track.get(first)?, *passage.heading.get(first)?);
-        let (sin, cos) = course.sin_cos();
+        let (begin, heading) = (*track.get(first)?, *passage.heading.get(first)?);
+        let (sin, cos) = heading.sin_cos();
         let place = |row: usize| {
             let [north, east] = [0, 1].map(|axis| (track[row][axis] - begin[axis]) / length);
             [north * cos + east * sin, east * cos - north * sin]
         };
-        let is_shown = |row: &usize| (passage.heading[*row] - course).abs() < MAX_TRACK_RAD;
+        let is_shown = |row: &usize| (passage.heading[*row] - heading).abs() < MAX_TRACK_RAD;
         Some((first..track.len()).take_while(is_shown).map(place).collect())
     }
 
@@ -161,8 +162,8 @@ pub struct MeasuredCircle {
     pub turn: HeldTurn,
     /// Figures of merit.
     pub figures: Characteristics,
-    /// North and east in ship lengths from the execute on, where the course is north; `None` without positions or
-    /// length.
+    /// Track from the execute on, turned so that the heading at the execute points north: north and east in ship
+    /// lengths; `None` without positions or length.
     pub track: Option<Vec<[f64; 2]>>,
 }
 
@@ -249,7 +250,7 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trial::{Columns, Origin};
+    use trial::{Columns, RecordOrigin};
 
     /// Circle of radius 50 m after a straight approach to the north-east, in lengths of 10 m; the rudder moves in the
     /// second before it, on the last metre of the approach.
@@ -267,7 +268,8 @@ mod tests {
         let channels =
             [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::North, north), (Channel::East, east)];
         let columns = Columns { time, channels: channels.into(), unknown: Vec::new() };
-        let trial = Trial::new("circle", Origin::Measured { file: "made up".into(), sha256: String::new() }, columns);
+        let trial =
+            Trial::new("circle", RecordOrigin::Measured { file: "made up".into(), sha256: String::new() }, columns);
         let trial = trial.expect("a record");
         let record = resampled_record(&trial, 10.0, Some(10.0)).expect("headings");
         let track = HeldTurn::from_trial(&trial).expect("a turn").track(&record).expect("positions");

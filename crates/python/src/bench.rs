@@ -6,7 +6,7 @@ use campaign::failure::OnPath;
 use pyo3::prelude::*;
 use study::commands::bench::{BenchRequest, run_benchmark, skipped_record_line};
 
-use crate::options::request;
+use crate::options::parse_request;
 use crate::python_method::{PyIdentifier, PythonMethods};
 use crate::run::{Watch, watched};
 
@@ -25,11 +25,11 @@ pub fn bench(
     let observer = Arc::clone(&watch);
     let work = move || {
         let options = options.into_iter().chain([String::from("--")]).chain(scenarios);
-        let asked: BenchRequest = request(options.collect())?;
+        let asked: BenchRequest = parse_request(options.collect())?;
         let entrant = |(label, function): (String, _)| (label, Arc::new(PyIdentifier(function)) as _);
         let entrants = functions.into_iter().map(entrant).collect();
         let results = run_benchmark(&asked, seed, &entrants, None, observer.as_ref())?;
-        let text = results.json().on("describe", "bench.json".as_ref())?;
+        let text = results.to_json().on("describe", "bench.json".as_ref())?;
         Ok((text, results.skipped.iter().map(skipped_record_line).collect::<Vec<String>>()))
     };
     let (text, skipped) = watched(py, &watch, progress.as_ref(), work)?;

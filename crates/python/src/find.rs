@@ -6,7 +6,7 @@ use study::commands::find::find_answer;
 use study::documents;
 use study::options::FindRequest;
 
-use crate::options::request;
+use crate::options::parse_request;
 use crate::record::sentences;
 use crate::wait::patiently;
 
@@ -14,7 +14,7 @@ use crate::wait::patiently;
 #[pyfunction]
 pub fn find(py: Python<'_>, logs: Vec<String>, options: Vec<String>) -> PyResult<(String, Vec<String>)> {
     patiently(py, move || {
-        let asked: FindRequest = request(options.into_iter().chain([String::from("--")]).chain(logs).collect())?;
+        let asked: FindRequest = parse_request(options.into_iter().chain([String::from("--")]).chain(logs).collect())?;
         let mut warnings = Warnings::default();
         let answer = find_answer(&asked, &mut warnings)?;
         Ok((documents::answer_text(&answer)?, sentences(&warnings.ranked())))

@@ -60,7 +60,7 @@ pub fn fit(
     let (records, validation) = (trials(&records), trials(&validate));
     patiently(py, move || {
         let priors = earlier(&priors)?;
-        let mut methods = work::fit::methods(&methods, seed)?;
+        let mut methods = work::fit::labelled_methods(&methods, seed)?;
         for (label, function) in functions {
             name::check_label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
             if methods.iter().any(|(other, _)| *other == label) {

@@ -14,6 +14,6 @@ struct KeywordOptions<R: Args> {
 /// Request parsed from options, each written as `--name=value`.
 ///
 /// Fails with the usage error of the command line.
-pub fn request<R: Args>(options: Vec<String>) -> Result<R, Failure> {
+pub fn parse_request<R: Args>(options: Vec<String>) -> Result<R, Failure> {
     KeywordOptions::try_parse_from(options).map(|parsed| parsed.request).map_err(|usage| usage_failure(&usage))
 }

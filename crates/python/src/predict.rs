@@ -10,7 +10,7 @@ use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::earlier::{NamedModel, earlier};
-use crate::options::request;
+use crate::options::parse_request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
@@ -30,7 +30,7 @@ pub fn predict(
     patiently(py, move || {
         let names = models.iter().map(|model| model.name.clone());
         let mut asked: PredictRequest =
-            request(options.into_iter().chain([String::from("--")]).chain(names).collect())?;
+            parse_request(options.into_iter().chain([String::from("--")]).chain(names).collect())?;
         asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
         let mut warnings = Warnings::default();
         let read = |NamedModel { name, text }: &NamedModel| match text {

@@ -8,11 +8,11 @@ use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use study::options::ReadingOptions;
-use study::records::{expand, file_and_hash, read_all, source, trial_from_log};
+use study::records::{expand, file_and_hash, read_all, trial_from_log, warning_source};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
-use crate::options::request;
+use crate::options::parse_request;
 use crate::raise::raised;
 use crate::wait::patiently;
 
@@ -84,7 +84,7 @@ impl PyRecord {
 
     #[getter]
     fn heading_from_yaw_rate(&self) -> bool {
-        self.trial.heading_from_yaw_rate()
+        self.trial.is_heading_integrated()
     }
 
     /// Names of the columns, as in a file.
@@ -125,7 +125,7 @@ impl PyRecord {
 #[pyfunction]
 pub fn read(py: Python<'_>, path: PathBuf, options: Vec<String>) -> PyResult<Vec<PyRecord>> {
     patiently(py, move || {
-        let options: ReadingOptions = request(options)?;
+        let options: ReadingOptions = parse_request(options)?;
         let record = |file: PathBuf| {
             let mut warnings = Warnings::default();
             let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
@@ -153,7 +153,7 @@ pub fn record_of(
     options: Vec<String>,
 ) -> PyResult<PyRecord> {
     let table = table(&columns).map_err(raised)?;
-    patiently(py, move || record_from_table(&name, &table, &request(options)?, None))
+    patiently(py, move || record_from_table(&name, &table, &parse_request(options)?, None))
 }
 
 /// Record `name` from the text of a table and of its sidecar.
@@ -169,7 +169,7 @@ pub fn record_from_table(
     let sidecar = sidecar.map_err(Failure::input)?;
     let mut log = Log::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
     let mut warnings = Warnings::default();
-    warnings.extend(source(&path).attach_to(std::mem::take(&mut log.warnings)));
+    warnings.extend(warning_source(&path).attach_to(std::mem::take(&mut log.warnings)));
     let trial = trial_from_log(log, &path, options, &mut warnings)?;
     Ok(PyRecord { trial, warnings: warnings.ranked() })
 }

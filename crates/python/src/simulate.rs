@@ -5,9 +5,9 @@ use campaign::outside_estimates::record_name;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use study::options::{Replicates, SimulateRequest};
-use study::work::simulate::{RecordFiles, records, tasks};
+use study::work::simulate::{RecordFiles, simulate_record_files, tasks};
 
-use crate::options::request;
+use crate::options::parse_request;
 use crate::record::{PyRecord, record_from_table};
 use crate::scene::ScenarioInput;
 use crate::wait::patiently;
@@ -25,13 +25,13 @@ pub fn simulate(
         let scenario = scene.read(seed)?;
         let replicate = replicate.map_or(Replicates::All, Replicates::One);
         let asked = SimulateRequest { scenario: scene.path().to_owned(), cell, replicate };
-        let whole = request(Vec::new())?;
+        let whole = parse_request(Vec::new())?;
         let read = |RecordFiles { name, table, sidecar, truth }: RecordFiles| {
             Ok((record_from_table(&name, &table, &whole, sidecar.as_deref())?, truth))
         };
-        let trials = tasks(&scenario, &asked)?
-            .into_par_iter()
-            .map(|task| records(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect());
+        let trials = tasks(&scenario, &asked)?.into_par_iter().map(|task| {
+            simulate_record_files(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect()
+        });
         // The first failure in the order of the trials.
         let trials: Vec<Result<Vec<(PyRecord, String)>, Failure>> = trials.collect();
         Ok(trials.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())

@@ -10,7 +10,7 @@ use study::work;
 
 use crate::curve::{ReplayArrays, curve};
 use crate::earlier::{NamedModel, earlier};
-use crate::options::request;
+use crate::options::parse_request;
 use crate::record::{PyRecord, read_warnings, sentences, trials};
 use crate::wait::patiently;
 
@@ -52,7 +52,7 @@ pub fn trace(
     let (records, validation) = (trials(&records), trials(&validate));
     patiently(py, move || {
         // The command line requires the name of a record; the records themselves are passed separately.
-        let asked: TraceRequest = request([options, vec![String::from("record")]].concat())?;
+        let asked: TraceRequest = parse_request([options, vec![String::from("record")]].concat())?;
         let [records, validation] = [records, validation].map(|trials| work::trace::withhold_channels(&asked, trials));
         let mut warnings = Warnings::default();
         warnings.extend(reading.iter().cloned().chain(repetition_warnings(&records, &validation)));

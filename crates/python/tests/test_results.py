@@ -51,7 +51,7 @@ def test_a_prediction_has_medians_and_intervals(predicted):
     figure = predicted["zig-zag 10/10"].figures["first_overshoot_deg"]
     assert figure.ci90[0] <= figure.ci50[0] <= figure.median <= figure.ci50[1] <= figure.ci90[1]
     assert predicted["turning-circle 35"].figures["steady_rate_deg_s"].extrapolated
-    assert 0 <= predicted.replays[0].band_coverage_90 <= 1
+    assert 0 <= predicted.replays[0].band_coverage_90 <= 1 and not predicted.replays[0].extrapolated
     assert predicted.replays[0].figures["first_overshoot_deg"].measured == pytest.approx(6.8, abs=0.3)
 
 

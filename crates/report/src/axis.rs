@@ -13,9 +13,11 @@ use crate::lines::wrap;
 use crate::number;
 pub use crate::tick_rule::TickRule;
 
-/// Share of a logarithmic axis that belongs to zero and the break; the places of zero and of the break.
+/// Share of the length of a logarithmic axis that is kept for zero and the break.
 const ZERO_SLOT: f64 = 0.21;
+/// Position of zero, as a share of the length of the axis.
 const ZERO_AT: f64 = 0.08;
+/// Position of the break, as a share of the length of the axis.
 const BREAK_AT: f64 = 0.155;
 /// Maximum magnitude on a linear axis.
 const MAX_MAGNITUDE: f64 = 1e100;

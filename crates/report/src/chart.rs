@@ -101,7 +101,7 @@ impl Chart {
         Ok(())
     }
 
-    /// Group of a series of the key, clipped at the frame.
+    /// SVG group of the series `name` of the key, clipped at the frame.
     fn cut(&self, name: Option<&str>) -> SvgGroup {
         SvgGroup { clip: Some(self.bounds()), ..SvgGroup::named(name) }
     }
@@ -127,7 +127,7 @@ impl Chart {
 
     /// Area between two curves.
     pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> PlotResult {
-        let edge = |curve: &PlotCurve| curve.finite().filter(|pair| self.is_plottable(pair)).collect::<Vec<_>>();
+        let edge = |curve: &PlotCurve| curve.finite_pairs().filter(|pair| self.is_plottable(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
 

@@ -86,7 +86,7 @@ impl PlotCurve {
     }
 
     /// Finite pairs of the curve.
-    pub fn finite(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+    pub fn finite_pairs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
     }
 }
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn gaps_and_surplus_are_skipped() {
         let curve = PlotCurve::new([0.0, 1.0, f64::NAN, 3.0], [5.0, f64::INFINITY, 7.0]);
-        assert_eq!(curve.finite().collect::<Vec<_>>(), [(0.0, 5.0)]);
+        assert_eq!(curve.finite_pairs().collect::<Vec<_>>(), [(0.0, 5.0)]);
         assert_eq!(curve.pairs().count(), 3);
     }
 
@@ -134,7 +134,7 @@ mod tests {
         );
         assert_eq!((thin.x[0], thin.x.last()), (0.0, x.last()));
         assert!(thin.x.is_sorted());
-        let kept: Vec<(f64, f64)> = thin.finite().collect();
+        let kept: Vec<(f64, f64)> = thin.finite_pairs().collect();
         assert!(kept.contains(&(123_456.0, 7.0)) && kept.contains(&(654_321.0, -7.0)));
         // The line is broken at both gaps.
         for gap in [300_000.0..310_000.0, 500_000.0..500_001.0] {
@@ -146,7 +146,7 @@ mod tests {
     fn a_dense_curve_of_gaps_alone_draws_nothing() {
         assert_eq!(
             PlotCurve::new(vec![f64::NAN; 2 * PlotCurve::MAX_PAIRS], vec![0.0; 2 * PlotCurve::MAX_PAIRS])
-                .finite()
+                .finite_pairs()
                 .count(),
             0
         );

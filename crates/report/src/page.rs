@@ -98,7 +98,7 @@ impl Page {
     }
 
     /// Titles of the parts that a browser shows on request.
-    pub fn folded(&self) -> Vec<&str> {
+    pub fn folded_titles(&self) -> Vec<&str> {
         self.folded.iter().map(String::as_str).collect()
     }
 
@@ -167,7 +167,7 @@ mod tests {
         let markdown = "# Trial\n\n![Figure 1](last.png)\n\n*Figure 1. K is 0.1. a\\*b*\n\n\\<b>c\n\n![Figure 2](fit.png)\n\n\
                         *Figure 2. K is 0.1. a\\*b*\n\n## Numbers\n\n- one\n- two\n![none]\n";
         assert_eq!(page.to_markdown(), markdown);
-        assert_eq!(page.folded(), ["Numbers"]);
+        assert_eq!(page.folded_titles(), ["Numbers"]);
         assert_eq!(page.figures().iter().map(|figure| figure.stem.as_str()).collect::<Vec<_>>(), ["last", "fit"]);
     }
 

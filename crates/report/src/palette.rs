@@ -84,10 +84,13 @@ pub const DASHED: Dash = &[5.0, 2.5];
 pub const DOTTED: Dash = &[1.4, 1.8];
 /// Dash-dotted line.
 pub const DASH_DOT: Dash = &[6.0, 2.0, 1.4, 2.0];
+/// Line of long dashes.
 const LONG_DASH: Dash = &[10.0, 2.5];
+/// Line of a dash and two dots.
 const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
 /// Line of short dashes.
 pub const SHORT_DASH: Dash = &[3.0, 1.6];
+/// Line of alternating long and short dashes.
 const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
 /// Colour of text, frames and the truth.

@@ -69,8 +69,9 @@ impl Grid {
 /// Column of panels.
 struct GridColumn {
     side: AxisSide,
-    /// Left edge and width of the panels, points.
+    /// Left edge of the panels, points.
     left: f64,
+    /// Width of the panels, points.
     width: f64,
     /// `true` if its names are turned, because their words are too long to fit side by side.
     is_turned: bool,

@@ -106,8 +106,8 @@ fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
 }
 
 impl Style {
-    /// Theme with this style. `width-mm` and `dpi` are applied by the maker of the theme, except the resolution of a
-    /// screen.
+    /// Theme with the sizes, resolution, colours and limits of this style. `width_mm` is not applied: the caller makes
+    /// a theme of that width.
     ///
     /// Fails if a value is out of its range, or if a key is unknown.
     pub fn apply_to(&self, theme: Theme) -> Result<Theme, StyleError> {

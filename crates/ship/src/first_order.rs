@@ -4,7 +4,6 @@
 //! a course-unstable hull a < 0; both are regular points of these parameters, while K and T pass through infinity.
 //!
 //! Source of the model: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 /// First-order response, parametrised so that T → ∞ and negative T are regular.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,8 +65,8 @@ pub struct Transition {
     pub phi3: f64,
 }
 
-/// Decay exp(−x), and the scaled functions fₙ(x), n = 1..4: the n-th tail of exp(−x) over (∓x)ⁿ, without cancellation
-/// near x = 0.
+/// Decay exp(−x), and fₙ(x) = Σ (−x)^k / (k+n)! over k = 0, 1, … for n = 1 to 4, without cancellation near x = 0: the
+/// remainder of the series of exp(−x) after n terms, over (−x)ⁿ.
 fn tails(x: f64) -> (f64, [f64; 4]) {
     if x.abs() < 1.0 {
         // f₄(x) = Σ (−x)^k / (k+4)!, then down by fₙ = 1/n! − x fₙ₊₁.

@@ -19,6 +19,7 @@
 //!
 //! All quantities are in SI units and radians. Positive rudder gives positive (starboard) yaw rate. Heading increases
 //! clockwise seen from above. `v` is positive to starboard.
+#![expect(non_snake_case, reason = "K, T and U are the symbols of the field, Xvv and the like those of the sources")]
 
 pub mod angle;
 pub mod dynamics;

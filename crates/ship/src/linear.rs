@@ -5,7 +5,6 @@
 //! finite amplitude does not reproduce them.
 //!
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; the elimination is re-derived.
-#![expect(non_snake_case, reason = "M, N, K and T1..T3 are the symbols of the field")]
 
 use thiserror::Error;
 

@@ -25,8 +25,10 @@ pub const USUAL_K_OVER_T_PRIME: [f64; 2] = [0.25, 2.0];
 /// Usual range of the rudder rate of ships, deg/s; SOLAS II-1/29 requires 65° in 28 s, 2.3 deg/s.
 const SHIP_RUDDER_RATE_DEG_S: [f64; 2] = [2.0, 7.0];
 
-/// Minimum length of a full-scale ship, m, and the range of lengths of the full-scale ships of shorter models.
+/// Minimum length of a full-scale ship, m; a shorter ship is a model.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
+
+/// Range of the lengths of full-scale ships that are tested as models, m.
 const MODELLED_LENGTHS_M: [f64; 2] = [100.0, 400.0];
 
 /// Usual range of the rudder rate, deg/s, for a length, m: 2 to 7 for ships, multiplied by √(L_ship/L) for models
@@ -41,7 +43,7 @@ pub type Dimension = [i32; 2];
 
 impl Particulars {
     /// Ship-length time L/V, s.
-    pub fn time(self) -> f64 {
+    pub fn ship_length_time(self) -> f64 {
         self.length / self.speed
     }
 
@@ -50,11 +52,11 @@ impl Particulars {
     ///
     /// Not finite if length or speed is zero.
     pub fn prime_factor(self, [seconds, metres]: Dimension) -> f64 {
-        self.time().powi(-seconds) * self.length.powi(-metres)
+        self.ship_length_time().powi(-seconds) * self.length.powi(-metres)
     }
 
     /// Factor on a quantity from this ship to a geometrically similar ship, at equal prime value.
-    pub fn factor_to(self, other: Self, dimension: Dimension) -> f64 {
+    pub fn similarity_factor_to(self, other: Self, dimension: Dimension) -> f64 {
         self.prime_factor(dimension) / other.prime_factor(dimension)
     }
 }
@@ -143,7 +145,7 @@ mod tests {
         assert!((16.3 * yukun.prime_factor(dimension("s")) - 1.3335).abs() < 1e-3);
         let model = Particulars { length: 4.2, speed: 8.59 / 5.0 };
         // Froude scaling: a ship of one twenty-fifth of the length is five times as fast in time.
-        assert!((yukun.factor_to(model, dimension("s")) - 0.2).abs() < 1e-12);
-        assert!((yukun.factor_to(model, dimension("m")) - 0.04).abs() < 1e-12);
+        assert!((yukun.similarity_factor_to(model, dimension("s")) - 0.2).abs() < 1e-12);
+        assert!((yukun.similarity_factor_to(model, dimension("m")) - 0.04).abs() < 1e-12);
     }
 }

@@ -16,7 +16,7 @@ pub struct TimeConstants {
 
 impl TimeConstants {
     /// Time constant, s, at all times.
-    pub fn always(time: f64) -> Self {
+    pub fn at_all_times(time: f64) -> Self {
         Self { always: time, spans: Vec::new() }
     }
 

@@ -3,9 +3,9 @@
 //! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
 //!
 //! with δ_e the recorded rudder after dead time and every transformation, and s_a, s_b the products of the scales of
-//! the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and T₂ r' = s − (1 +
-//! T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard
-//! form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
+//! the effects. With [`SecondOrderTimeConstants`] the right-hand side f becomes the rate of an extra state s and
+//! T₂ r' = s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with
+//! T₁ = 1/a (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
 //!
 //! Sources: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; Bech and Wagner Smitt (1969),
 //! Analogue simulation of ship manoeuvres.
@@ -14,7 +14,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{BaseFactors, Effect, EffectReal, EffectTarget, OperatingPoint, Parameter, SwayCoupling};
+use crate::effects::{
+    BaseFactors, Effect, EffectReal, EffectTarget, OperatingPoint, Parameter, SecondOrderTimeConstants,
+};
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
 use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
@@ -86,7 +88,7 @@ impl ResponseModel {
                 with_memory = index + 1;
             }
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
-            if f64::effect_equations(effect.as_ref()).sway_coupling(&neutral).is_some() {
+            if f64::effect_equations(effect.as_ref()).second_order_time_constants(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
@@ -129,7 +131,7 @@ impl ResponseModel {
         let coupling = self.second_order.and_then(|index| {
             let place = self.places[index];
             let effect = R::effect_equations(self.effects[index].as_ref());
-            Some((effect.sway_coupling(&parameters[place.parameters()])?, place.states.0))
+            Some((effect.second_order_time_constants(&parameters[place.parameters()])?, place.states.0))
         });
         Response { model: self, parameters, coupling }
     }
@@ -143,7 +145,7 @@ pub struct Response<R = f64> {
     model: ResponseModel,
     parameters: Vec<R>,
     /// T₂ and T₃ of a second-order response, and the index of its state s.
-    coupling: Option<(SwayCoupling<R>, usize)>,
+    coupling: Option<(SecondOrderTimeConstants<R>, usize)>,
 }
 
 impl Response {
@@ -198,8 +200,8 @@ impl<R: EffectReal> Response<R> {
             heading: state[0],
             yaw_rate: state[1],
             rudder,
-            inverse_time: self.parameters[0],
-            gain: self.parameters[1],
+            inverse_T: self.parameters[0],
+            K_over_T: self.parameters[1],
             measured: &input.measured,
         }
     }
@@ -236,7 +238,7 @@ impl<R: EffectReal> Response<R> {
         let f = -a * state[1] + b * steering + instant.acceleration;
         match &self.coupling {
             Some((coupling, s)) => {
-                let (t2, t3) = (coupling.second_time, coupling.rudder_time);
+                let (t2, t3) = (coupling.T2, coupling.T3);
                 let lead = b * t3 * (instant.rudder + self.parameters[2]);
                 (f, (state[*s] - (t2 * a + 1.0) * state[1] + lead) / t2)
             }
@@ -254,7 +256,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
     /// Time constants that steps must resolve.
     fn time_constants(&self) -> TimeConstants {
         let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
-        let mut pace = TimeConstants::always(values[0].abs().recip());
+        let mut pace = TimeConstants::at_all_times(values[0].abs().recip());
         for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
             let p = &values[place.parameters()];
             let (time, span) = (effect.min_time_constant(p), effect.fast_span(p));
@@ -276,7 +278,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         }
         if let Some((coupling, s)) = self.coupling {
             // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces it.
-            let lead = coupling.second_time - coupling.rudder_time;
+            let lead = coupling.T2 - coupling.T3;
             state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
         }
     }
@@ -287,7 +289,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);
         if let Some((coupling, s)) = self.coupling {
-            state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
+            state[s] = state[s] + (coupling.T2 * self.parameters[0] + 1.0) * change;
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::wave_path;
 
 /// Upper estimate of the cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cost {
+pub struct RunCost {
     /// Duration of the run, s; every awaited heading counts with the maximum wait.
     pub duration: f64,
     /// Number of steps of solver, weather and sea, rows, and display readings.
@@ -39,19 +39,19 @@ impl RunPart {
 
 impl Simulation {
     /// Upper estimate of the cost, for a specification whose single values are valid.
-    pub fn cost(&self) -> Cost {
+    pub fn cost(&self) -> RunCost {
         let (manoeuvre, record) = (self.until_end_of_manoeuvre(), self.until_end_of_record());
         let sum = |parts: &[RunPart]| parts.iter().map(|part| part.duration).sum::<f64>();
         let parts = if sum(&manoeuvre) < sum(&record) { &manoeuvre } else { &record };
         let longest =
             parts.iter().fold(parts[0], |longest, part| if part.duration > longest.duration { *part } else { longest });
         let duration = sum(parts);
-        Cost { duration, steps: duration * self.steps_per_second(), longest: (longest.key, longest.value) }
+        RunCost { duration, steps: duration * self.steps_per_second(), longest: (longest.key, longest.value) }
     }
 
     /// Check of the number of steps; fails with the key and value of the part with the longest duration.
     pub(crate) fn check_cost(&self) -> Check {
-        let Cost { steps, longest: (key, value), .. } = self.cost();
+        let RunCost { steps, longest: (key, value), .. } = self.cost();
         let most = MAX_STEPS as f64;
         if steps <= most {
             return Ok(());
@@ -171,7 +171,7 @@ mod tests {
         let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
         simulation.sensors.heading_delay = -3.0;
         (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.0));
-        let Cost { duration, steps, .. } = simulation.cost();
+        let RunCost { duration, steps, .. } = simulation.cost();
         assert_eq!(duration, 3600.0 + 1.0 + 100.0 + 3.0);
         // The closed form has steps of a minute; every row is read twice.
         assert!((steps - duration * (1.0 / 60.0 + 2.0)).abs() < 1e-6, "{steps}");

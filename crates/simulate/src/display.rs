@@ -4,14 +4,14 @@
 use rand::rngs::ChaCha8Rng;
 
 use crate::sensor::{Sensors, quantise};
-use crate::stream::{Purpose, StreamKey, normal};
+use crate::stream::{RngPurpose, StreamKey, normal};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
 /// Tolerance of the awaited heading, rad: a multiple of the quantum can be below it by a rounding error.
 const READING_TOLERANCE: f64 = 1e-9;
 
-/// Reading of the display.
+/// Reading of the heading display by the helmsman.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DisplayReading {
     /// Time, s.
@@ -47,7 +47,7 @@ impl HeadingDisplay {
     pub fn new(period: f64, sensors: Sensors, waves: SeaWaves, key: &StreamKey, heading: f64) -> Self {
         let base = quantise(heading + sensors.heading_bias, sensors.heading_quantum);
         let wander = sensors.heading_wander.map(|process| WanderPath::new(process, CompassReader::Display, key));
-        let (rng, log) = (key.rng(Purpose::Display), Vec::with_capacity(1024));
+        let (rng, log) = (key.rng(RngPurpose::Display), Vec::with_capacity(1024));
         Self { period, next: 0, base, sensors, waves, wander, rng, log }
     }
 
@@ -65,15 +65,15 @@ impl HeadingDisplay {
         self.next as f64 * self.period
     }
 
-    /// Reading of the display at the next time, with the compass at `gyro` (rad); `true` if `side` · deviation ≥
+    /// Reads the display at its next time, with the heading of the compass `psi` (rad); `true` if `side` · deviation ≥
     /// `angle`.
-    pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
+    pub fn read(&mut self, psi: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;
         let [wave, _] = self.waves.heading_and_rate_at(time);
         let noise = self.sensors.heading_noise * normal(&mut self.rng);
         let wander = self.wander.as_mut().map_or(0.0, |wander| wander.error_at(time));
-        let heading = quantise(gyro + wave + self.sensors.heading_bias + wander + noise, self.sensors.heading_quantum);
+        let heading = quantise(psi + wave + self.sensors.heading_bias + wander + noise, self.sensors.heading_quantum);
         self.log.push(DisplayReading { time, heading, wander });
         side * (heading - self.base) >= angle - READING_TOLERANCE
     }

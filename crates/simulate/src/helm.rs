@@ -19,8 +19,10 @@ pub struct Helmsman {
     pub reaction_time: f64,
 }
 
-/// Range of the time between two readings of an instrument, s.
+/// Minimum time between two readings of an instrument, s.
 pub(crate) const MIN_PERIOD_S: f64 = 1e-3;
+
+/// Maximum time between two readings of an instrument, s.
 pub(crate) const MAX_PERIOD_S: f64 = 1e3;
 
 impl Helmsman {

@@ -74,5 +74,5 @@ pub use recording::Recording;
 pub use sensor::Sensors;
 pub use simulated_ship::{SimulatedShip, Solver};
 pub use simulation::{BeforeExecute, SimulatedTrial, Simulation, Truth};
-pub use stream::{Purpose, StreamKey};
+pub use stream::{RngPurpose, StreamKey};
 pub use trial::{Manoeuvre, Side};

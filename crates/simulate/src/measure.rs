@@ -17,7 +17,7 @@ use crate::helm::HelmOrder;
 use crate::run::RunResult;
 use crate::sample::Sample;
 use crate::sensor::{DropOut, Sensors, quantise};
-use crate::stream::{Purpose, StreamKey, normal, uniform};
+use crate::stream::{RngPurpose, StreamKey, normal, uniform};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
@@ -118,7 +118,7 @@ pub(crate) fn with_sensor_errors(
 ) -> WrittenRows {
     let mut rudder = scene.rudder.clone();
     if scene.rudder_is_read {
-        disturb(&mut rudder, sensors.rudder_noise, key.rng(Purpose::Rudder));
+        disturb(&mut rudder, sensors.rudder_noise, key.rng(RngPurpose::Rudder));
         quantise_all(&mut rudder, sensors.rudder_quantum);
     }
     let (channels, kept) = channels_with_errors(sensors, scene, waves, key);
@@ -196,11 +196,11 @@ fn compass_and_rate(
     heading.iter_mut().for_each(|psi| *psi += sensors.heading_bias);
     if let Some(process) = sensors.heading_wander {
         let points: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::wander_point).collect();
-        let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &points);
+        let errors = WanderPath::new(process, CompassReader::Record, key).errors_at(&scene.instants, &points);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }
     // Sampled in every row, used or not, so that readings of the helmsman do not change later random numbers.
-    disturb(&mut heading, sensors.heading_noise, key.rng(Purpose::Heading));
+    disturb(&mut heading, sensors.heading_noise, key.rng(RngPurpose::Heading));
     quantise_all(&mut heading, sensors.heading_quantum);
     if !scene.readings.is_empty() {
         for (psi, &instant) in heading.iter_mut().zip(&scene.instants) {
@@ -214,7 +214,7 @@ fn compass_and_rate(
         let [noise, bias, scale_error] = [sensors.yaw_rate_noise, sensors.yaw_rate_bias, sensors.yaw_rate_scale_error]
             .map(Option::unwrap_or_default);
         yaw_rate.iter_mut().for_each(|r| *r = (1.0 + scale_error) * *r + bias);
-        disturb(yaw_rate, noise, key.rng(Purpose::YawRate));
+        disturb(yaw_rate, noise, key.rng(RngPurpose::YawRate));
     }
     (heading, yaw_rate)
 }
@@ -222,7 +222,7 @@ fn compass_and_rate(
 /// Faults between compass and record: spikes, and rows without a heading.
 fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     if let Some(spikes) = sensors.heading_spikes {
-        let mut rng = key.rng(Purpose::HeadingSpikes);
+        let mut rng = key.rng(RngPurpose::HeadingSpikes);
         for psi in heading.iter_mut() {
             // Both are sampled in every row, so that another probability does not change later random numbers.
             let (hit, to_port) = (uniform(&mut rng) < spikes.probability, uniform(&mut rng) < 0.5);
@@ -273,10 +273,10 @@ fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<boo
     if !drop_out.can_lose_rows() {
         return None;
     }
-    let mut rng: ChaCha8Rng = key.rng(Purpose::DropOut);
+    let mut rng: ChaCha8Rng = key.rng(RngPurpose::DropOut);
     let mut lost: Vec<bool> = (0..rows).map(|_| uniform(&mut rng) < drop_out.probability).collect();
     if let (Some(probability), Some(mean_rows)) = (drop_out.burst_probability, drop_out.burst_mean_rows) {
-        let mut rng = key.rng(Purpose::Burst);
+        let mut rng = key.rng(RngPurpose::Burst);
         let mut inside = false;
         for lost in &mut lost {
             let draw = uniform(&mut rng);

@@ -11,7 +11,7 @@ use crate::helm::{MAX_PERIOD_S, MIN_PERIOD_S};
 use crate::limits::{MAX_EXECUTES, MAX_ROWS};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
-use crate::stream::{Purpose, StreamKey, normal};
+use crate::stream::{RngPurpose, StreamKey, normal};
 
 /// Record of a run: start, duration, sampling and rudder source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -65,7 +65,7 @@ impl Recording {
         Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
     }
 
-    /// Maximum over the durations of the records, s.
+    /// Maximum permitted duration at this sampling period, s; it gives `MAX_ROWS` rows.
     pub(crate) fn max_duration(&self) -> f64 {
         (MAX_ROWS - 1) as f64 * self.period
     }
@@ -153,16 +153,16 @@ const MAX_RESERVED_ROWS: usize = 4096;
 
 impl Sampler {
     /// Sampler at the stamps of the rows.
-    pub fn rows(start: f64, recording: &Recording) -> Self {
+    pub fn at_row_times(start: f64, recording: &Recording) -> Self {
         Self::new(start, recording, None)
     }
 
     /// Sampler at the instants of the instruments; `None` if these instants are the stamps.
-    pub fn instruments(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
+    pub fn at_instrument_times(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
         let deviates = sensors.jitter > 0.0 || sensors.heading_delay != 0.0;
         deviates.then(|| {
-            let deviation = Jitter { rng: key.rng(Purpose::Jitter), sd: sensors.jitter, delay: sensors.heading_delay };
-            Self::new(start, recording, Some(deviation))
+            let jitter = Jitter { rng: key.rng(RngPurpose::Jitter), sd: sensors.jitter, delay: sensors.heading_delay };
+            Self::new(start, recording, Some(jitter))
         })
     }
 
@@ -178,7 +178,7 @@ impl Sampler {
     }
 
     /// Instant of the next sample, s; infinite after the last one.
-    pub fn next(&self) -> f64 {
+    pub fn next_time(&self) -> f64 {
         self.next
     }
 

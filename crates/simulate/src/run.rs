@@ -211,7 +211,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 continue;
             };
             let mut probed = h;
-            let event = watch.locate(from, end, h, |h| {
+            let event = watch.first_crossing(from, end, h, |h| {
                 probed = h;
                 ship.probe(path, h)
             });

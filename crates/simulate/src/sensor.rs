@@ -98,8 +98,10 @@ pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
 }
 
-/// Range of the lag of a gyrocompass, s; a shorter lag would only reduce the step of the solver.
+/// Minimum lag of a gyrocompass, s; a shorter lag would only reduce the step of the solver.
 const MIN_LAG_S: f64 = 0.01;
+
+/// Maximum lag of a gyrocompass, s.
 const MAX_LAG_S: f64 = 100.0;
 
 /// Maximum spike, deg, which is the maximum difference of two headings.

@@ -9,7 +9,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::degrees::Degrees;
 use trial::manoeuvre::Manoeuvre;
-use trial::{Conditions, Origin, Trial};
+use trial::{DeclaredConditions, RecordOrigin, Trial};
 
 use crate::display::HeadingDisplay;
 use crate::disturbance::Disturbances;
@@ -145,8 +145,10 @@ pub(crate) struct TrueRun {
 /// Default of [`Simulation::longest_wait`], s; no ship of the registry takes ten minutes for one leg of a zig-zag.
 const MAX_WAIT_S: f64 = 3600.0;
 
-/// Range of the step of the solver, s.
+/// Minimum step of the solver, s.
 const MIN_STEP_S: f64 = 1e-5;
+
+/// Maximum step of the solver, s.
 const MAX_STEP_S: f64 = 60.0;
 
 impl Simulation {
@@ -296,9 +298,9 @@ impl Simulation {
             None => 0.0,
             Some(number) => run.reach_execute(number)? + self.recording.offset.unwrap_or(0.0),
         };
-        let mut rows = Sampler::rows(start, &self.recording);
-        let mut instruments = Sampler::instruments(start, &self.recording, &self.sensors, key);
-        if instruments.as_ref().is_some_and(|sampler| sampler.next() < run.time()) {
+        let mut rows = Sampler::at_row_times(start, &self.recording);
+        let mut instruments = Sampler::at_instrument_times(start, &self.recording, &self.sensors, key);
+        if instruments.as_ref().is_some_and(|sampler| sampler.next_time() < run.time()) {
             // The first row has a heading from before its execute, whose time is now known: the run is repeated.
             run = self.begin(key, propagator());
         }
@@ -306,7 +308,7 @@ impl Simulation {
             if instruments.is_none() {
                 run.record_rows(&mut rows);
             }
-            let next = instruments.as_ref().map_or(rows.next(), |sampler| sampler.next().min(rows.next()));
+            let next = instruments.iter().map(Sampler::next_time).fold(rows.next_time(), f64::min);
             if next == f64::INFINITY {
                 break;
             }
@@ -372,15 +374,15 @@ impl Simulation {
     }
 
     /// Name and origin of the record of `key`.
-    pub(crate) fn name_and_origin(&self, StreamKey { cell, replicate, .. }: &StreamKey) -> (String, Origin) {
+    pub(crate) fn name_and_origin(&self, StreamKey { cell, replicate, .. }: &StreamKey) -> (String, RecordOrigin) {
         let (cell, replicate) = (*cell, *replicate);
-        let origin = Origin::Simulated { scenario: self.scenario_name.clone(), cell, replicate };
+        let origin = RecordOrigin::Simulated { scenario: self.scenario_name.clone(), cell, replicate };
         (format!("{}-{cell}-{replicate}", self.scenario_name), origin)
     }
 
     /// The same record with the declared noise, weather and particulars.
     pub(crate) fn with_declarations(&self, trial: Trial) -> Trial {
-        let conditions = Conditions { weather: self.recording.weather, ..Conditions::default() };
+        let conditions = DeclaredConditions { weather: self.recording.weather, ..DeclaredConditions::default() };
         let trial = trial.with_noise(self.sensors.declared_noise()).with_conditions(conditions);
         match self.ship.particulars() {
             Some(particulars) => trial.with_particulars(particulars),

@@ -12,7 +12,7 @@ use rand_distr::StandardNormal;
 /// discriminant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u16)]
-pub enum Purpose {
+pub enum RngPurpose {
     /// Noise of the recorded heading.
     Heading = 0,
     /// Noise of the heading display that the helmsman reads.
@@ -47,7 +47,7 @@ pub enum Purpose {
     HeadingSpikes = 15,
 }
 
-impl Purpose {
+impl RngPurpose {
     /// All purposes, in the order of their discriminants.
     pub const ALL: [Self; 16] = [
         Self::Heading,
@@ -82,12 +82,12 @@ pub struct StreamKey {
 
 impl StreamKey {
     /// Generator for one purpose, at its beginning.
-    pub fn rng(&self, purpose: Purpose) -> ChaCha8Rng {
+    pub fn rng(&self, purpose: RngPurpose) -> ChaCha8Rng {
         self.indexed_rng(purpose, 0)
     }
 
     /// Generator for one of several sources with the same purpose, at its beginning.
-    pub fn indexed_rng(&self, purpose: Purpose, index: u32) -> ChaCha8Rng {
+    pub fn indexed_rng(&self, purpose: RngPurpose, index: u32) -> ChaCha8Rng {
         // The 256-bit key of the cipher is the concatenation of seed, cell and replicate; the stream number contains
         // purpose and index. No hash is used, so no two streams coincide.
         let mut key = [0; 32];
@@ -121,12 +121,12 @@ mod tests {
     #[test]
     fn value_stability() {
         let key = StreamKey { seed: 20, cell: 3, replicate: 7 };
-        let draws = Purpose::ALL.map(|purpose| {
+        let draws = RngPurpose::ALL.map(|purpose| {
             let mut rng = key.rng(purpose);
             [rng.random::<u64>(), rng.random::<u64>()]
         });
         assert_eq!(draws, GOLDEN, "drawn {draws:#018x?}");
-        let mut rng = key.rng(Purpose::Heading);
+        let mut rng = key.rng(RngPurpose::Heading);
         assert_eq!([normal(&mut rng), normal(&mut rng)], [0.785_614_548_219_654_8, -0.108_714_680_095_289_06]);
     }
 
@@ -153,14 +153,14 @@ mod tests {
     fn every_key_and_purpose_has_a_stream_of_its_own() {
         let key = StreamKey { seed: 1, cell: 2, replicate: 3 };
         let swapped = StreamKey { seed: 2, cell: 1, replicate: 3 };
-        let mut first: Vec<u64> = Purpose::ALL
+        let mut first: Vec<u64> = RngPurpose::ALL
             .iter()
             .flat_map(|&purpose| [key.rng(purpose), key.indexed_rng(purpose, 1), swapped.rng(purpose)])
             .map(|mut rng| rng.random())
             .collect();
         first.sort_unstable();
         first.dedup();
-        assert_eq!(first.len(), 3 * Purpose::ALL.len());
+        assert_eq!(first.len(), 3 * RngPurpose::ALL.len());
     }
 
     #[test]
@@ -171,7 +171,7 @@ mod tests {
             let mut rng = key.rng(purpose);
             (0..count).map(|_| normal(&mut rng)).collect::<Vec<f64>>()
         };
-        let all = Purpose::ALL.map(draws);
+        let all = RngPurpose::ALL.map(draws);
         for (i, left) in all.iter().enumerate() {
             for right in &all[i + 1..] {
                 let product = left.iter().zip(right).map(|(x, y)| x * y).sum::<f64>() / f64::from(count);

@@ -6,7 +6,7 @@
 use rand::rngs::ChaCha8Rng;
 
 use crate::disturbance::GaussMarkov;
-use crate::stream::{Purpose, StreamKey, normal};
+use crate::stream::{RngPurpose, StreamKey, normal};
 
 /// Coloured error at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ pub(crate) struct WanderPath {
 impl WanderPath {
     /// Path at its beginning, for one reader.
     pub fn new(process: GaussMarkov, reader: CompassReader, key: &StreamKey) -> Self {
-        Self { process, rng: key.indexed_rng(Purpose::HeadingWander, reader as u32), last: None }
+        Self { process, rng: key.indexed_rng(RngPurpose::HeadingWander, reader as u32), last: None }
     }
 
     /// Error at time `t` (s), rad.
@@ -46,7 +46,7 @@ impl WanderPath {
     }
 
     /// Errors at `times` (s), rad, for a path through given points.
-    pub fn through(&mut self, times: &[f64], points: &[WanderPoint]) -> Vec<f64> {
+    pub fn errors_at(&mut self, times: &[f64], points: &[WanderPoint]) -> Vec<f64> {
         let mut ahead = points.iter().copied().peekable();
         let mut at = |&t: &f64| {
             while let Some(passed) = ahead.next_if(|point| point.time <= t) {
@@ -112,8 +112,8 @@ mod tests {
     #[test]
     fn it_is_stationary_from_the_first_instant_and_exact_over_uneven_ones() {
         let times = [3.0, 3.4, 5.0, 5.0, 11.0, 31.0];
-        assert_covariance(&times, 20_000, |replicate| path(CompassReader::Record, replicate).through(&times, &[]));
-        let same = path(CompassReader::Record, 0).through(&times, &[]);
+        assert_covariance(&times, 20_000, |replicate| path(CompassReader::Record, replicate).errors_at(&times, &[]));
+        let same = path(CompassReader::Record, 0).errors_at(&times, &[]);
         assert_eq!(same[2], same[3]);
     }
 
@@ -125,7 +125,7 @@ mod tests {
         assert_covariance(&times, 20_000, |replicate| {
             let mut display = path(CompassReader::Display, replicate);
             let points = readings.map(|time| WanderPoint { time, error: display.error_at(time) });
-            let errors = path(CompassReader::Record, replicate).through(&rows, &points);
+            let errors = path(CompassReader::Record, replicate).errors_at(&rows, &points);
             assert_relative_eq!(errors[2], points[1].error, max_relative = 1e-12);
             errors.into_iter().chain(points.map(|point| point.error)).collect()
         });
@@ -137,7 +137,7 @@ mod tests {
         let steps: Vec<f64> = (0..4000).map(f64::from).collect();
         let path_with = |correlation_time| {
             let process = GaussMarkov { correlation_time, ..PROCESS };
-            WanderPath::new(process, CompassReader::Record, &key).through(&steps, &[])
+            WanderPath::new(process, CompassReader::Record, &key).errors_at(&steps, &[])
         };
         let white = path_with(1e-300);
         let product = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 4000.0;

@@ -7,7 +7,7 @@ use ship::narrow_band::{NarrowBand, NarrowBandStep};
 
 use crate::disturbance::Disturbances;
 use crate::simulated_ship::SimulatedShip;
-use crate::stream::{Purpose, StreamKey, normal};
+use crate::stream::{RngPurpose, StreamKey, normal};
 
 /// Phase ω₀ h of a cell of width h; at 0.2 the cubic is within 10⁻⁵ σ of the smooth part of the path.
 const PHASE_PER_CELL: f64 = 0.2;
@@ -60,12 +60,12 @@ pub(crate) struct SeaWaves {
 impl SeaWaves {
     /// Waves of one run.
     pub fn new(disturbances: &Disturbances, ship: &SimulatedShip, key: &StreamKey) -> Self {
-        let declared = disturbances.waves.iter().map(|waves| WavePath::new(&waves.process(), key.rng(Purpose::Waves)));
+        let declared = disturbances.waves.iter().map(|sea| WavePath::new(&sea.process(), key.rng(RngPurpose::Waves)));
         let of_response = ship
             .random_headings()
             .iter()
             .enumerate()
-            .map(|(index, waves)| WavePath::new(waves, key.indexed_rng(Purpose::EffectWaves, index as u32)));
+            .map(|(index, waves)| WavePath::new(waves, key.indexed_rng(RngPurpose::EffectWaves, index as u32)));
         Self { paths: declared.chain(of_response).collect() }
     }
 
@@ -91,7 +91,7 @@ mod tests {
     const WAVES: NarrowBand = NarrowBand { sd: 0.01, frequency: 0.6, damping: 0.1 };
 
     fn path(replicate: u64) -> WavePath {
-        WavePath::new(&WAVES, StreamKey { seed: 5, cell: 1, replicate }.rng(Purpose::Waves))
+        WavePath::new(&WAVES, StreamKey { seed: 5, cell: 1, replicate }.rng(RngPurpose::Waves))
     }
 
     #[test]

@@ -5,7 +5,7 @@
 use rand::rngs::ChaCha8Rng;
 
 use crate::disturbance::{Disturbances, Squall};
-use crate::stream::{Purpose, StreamKey, normal};
+use crate::stream::{RngPurpose, StreamKey, normal};
 
 /// Default cell width, s: short against every correlation time of weather and every time constant of a
 /// ship.
@@ -87,15 +87,15 @@ impl Weather {
             drift: disturbances.drift,
             squall: disturbances.squall,
             walk: (disturbances.random_walk > 0.0).then(|| MarkovChain {
-                rng: key.rng(Purpose::RandomWalk),
+                rng: key.rng(RngPurpose::RandomWalk),
                 value: 0.0,
                 decay: 1.0,
                 kick: disturbances.random_walk * grid.sqrt(),
             }),
             gusts: disturbances
                 .gusts
-                .map(|gusts| MarkovChain::new(gusts.sd, gusts.correlation_time, grid, key.rng(Purpose::Gust))),
-            gusting: gusting.map(|g| MarkovChain::new(g.sd, g.correlation_time, grid, key.rng(Purpose::WindGust))),
+                .map(|gusts| MarkovChain::new(gusts.sd, gusts.correlation_time, grid, key.rng(RngPurpose::Gust))),
+            gusting: gusting.map(|g| MarkovChain::new(g.sd, g.correlation_time, grid, key.rng(RngPurpose::WindGust))),
         };
         if disturbances.are_time_dependent() {
             weather.cell.end = grid;

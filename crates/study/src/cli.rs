@@ -106,7 +106,7 @@ pub fn main() -> ExitCode {
     }
     match parse(&arguments).and_then(answer) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => ExitCode::from(failures::fail(&failure)),
+        Err(failure) => ExitCode::from(failures::report_failure(&failure)),
     }
 }
 
@@ -131,7 +131,7 @@ fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             usage.exit()
         }
-        _ if failures::is_for_programs() => usage_failure(&usage),
+        _ if failures::uses_json() => usage_failure(&usage),
         // Through the same writer as all other messages, because an argument may hold control characters.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })

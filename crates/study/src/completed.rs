@@ -36,32 +36,32 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
 }
 
 /// Names of the methods of the project.
-pub fn methods() -> Vec<String> {
+pub fn method_names() -> Vec<String> {
     let built = registry::default_settings().into_iter().filter_map(|settings| settings.build().ok());
     built.map(|method| method.id().to_owned()).collect()
 }
 
 /// Names of the methods of the project, and [`ALL`].
-pub fn methods_or_all() -> Vec<String> {
-    methods().into_iter().chain([String::from(ALL)]).collect()
+pub fn method_names_or_all() -> Vec<String> {
+    method_names().into_iter().chain([String::from(ALL)]).collect()
 }
 
 /// Names of the methods of a scenario.
-pub fn scenario_methods() -> Vec<String> {
-    methods().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
+pub fn scenario_method_names() -> Vec<String> {
+    method_names().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
 }
 
 /// Names of the tasks of the benchmark.
-pub fn tasks() -> Vec<String> {
+pub fn task_names() -> Vec<String> {
     BenchTask::ALL.map(|task| task.id().to_owned()).into()
 }
 
 /// Ids of the effects that a first-order response may lack.
-pub fn effects() -> Vec<String> {
+pub fn effect_ids() -> Vec<String> {
     EffectId::all().into_iter().map(|id| id.as_str().to_owned()).collect()
 }
 
 /// Names of the rules that weight structures.
-pub fn rules() -> Vec<String> {
-    ::trace::Rule::ALL.map(|rule| rule.as_str().to_owned()).into()
+pub fn rule_names() -> Vec<String> {
+    ::trace::WeightingRule::ALL.map(|rule| rule.as_str().to_owned()).into()
 }

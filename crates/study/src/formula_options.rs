@@ -24,7 +24,7 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
 }
 
 /// Effects read from a file. Fails with the line of the first invalid formula.
-pub fn formulas(path: &str) -> Result<Formulas, String> {
+pub fn read_formulas(path: &str) -> Result<Formulas, String> {
     const FILE: FileKind = FileKind { name: "a file of effects", max_bytes: 1 << 20 };
     let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;
     let file: EffectFile = toml::from_str(&text).map_err(|error| error.to_string().trim_end().to_owned())?;

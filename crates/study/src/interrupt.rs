@@ -12,7 +12,7 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// Ends the program during work that cannot be stopped, with the message of a failure.
 pub fn exit_with_failure(failure: &Failure) -> ! {
-    std::process::exit(i32::from(failures::fail(failure)))
+    std::process::exit(i32::from(failures::report_failure(failure)))
 }
 
 /// Installs the handler of Ctrl-C for the program `study`; Python handles Ctrl-C itself. Without a handler the signal

@@ -5,10 +5,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use crate::completed::{self, completed};
-use crate::formula_options::{Formulas, formula, formulas};
+use crate::formula_options::{Formulas, formula, read_formulas};
 pub use crate::ship_options::{ScaleOptions, ShipOptions, TrialOptions};
 pub use crate::style_options::{FigureChoice, FigureOptions, PageFigureOptions, PageFigures, StudyFigureOptions};
-use ::trace::{EffectId, Rule, Selection};
+use ::trace::{EffectId, Selection, WeightingRule};
 use campaign::failure::Failure;
 use campaign::scenario::problem::suggestion;
 use campaign::shard::Shard;
@@ -186,7 +186,7 @@ pub struct FitRequest {
     pub validate: Vec<PathBuf>,
     /// Method to use, or `all`; can be given several times [default: all but fourier-published and srivc]
     #[arg(long = "method", value_name = "ID|all", hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::methods_or_all))]
+        value_parser = completed(StringValueParser::new(), completed::method_names_or_all))]
     pub methods: Vec<String>,
     /// fit.json or trace.json of earlier trials of the same ship, a sister ship or a scale model: its hull, with wider
     /// errors, is the prior of this analysis; can be given several times
@@ -254,22 +254,22 @@ pub struct TraceRequest {
     pub without: Vec<WithheldChannel>,
     /// Effects that are always in the model, by their ids in `study list effects` or their names in `--effect`
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::effects))]
+        value_parser = completed(StringValueParser::new(), completed::effect_ids))]
     pub with: Vec<String>,
     /// Use exactly these effects, without a search
     #[arg(long, value_name = "ID,…", value_delimiter = ',', conflicts_with_all = ["with", "without_effect"],
-        hide_possible_values = true, value_parser = completed(StringValueParser::new(), completed::effects))]
+        hide_possible_values = true, value_parser = completed(StringValueParser::new(), completed::effect_ids))]
     pub only: Vec<String>,
     /// Effects to leave out of the search
     #[arg(long, value_name = "ID,…", value_delimiter = ',', hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::effects))]
+        value_parser = completed(StringValueParser::new(), completed::effect_ids))]
     pub without_effect: Vec<String>,
     /// A candidate effect as a formula for a yaw moment, in rudder angle, such as `bank = c * tanh(k * psi)`; can be
     /// given several times
     #[arg(long, value_name = "NAME = FORMULA", value_parser = formula)]
     pub effect: Vec<Arc<Formula>>,
     /// Candidate effects from a file, `effects = ["NAME = FORMULA", …]`
-    #[arg(long, value_name = "FILE.toml", value_parser = formulas)]
+    #[arg(long, value_name = "FILE.toml", value_parser = read_formulas)]
     pub effects: Option<Formulas>,
     /// Fit no hulls of three degrees of freedom; they are fitted if length and speed of the ship are known and the
     /// effects leave more than noise
@@ -280,9 +280,9 @@ pub struct TraceRequest {
     #[arg(long = "prior", value_name = "MODEL.json", conflicts_with = "without_hull")]
     pub priors: Vec<PathBuf>,
     /// How models are weighted: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
-    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), hide_possible_values = true,
-        value_parser = completed(rule, completed::rules))]
-    pub rule: Rule,
+    #[arg(long, value_name = "NAME", default_value = WeightingRule::default().as_str(), hide_possible_values = true,
+        value_parser = completed(rule, completed::rule_names))]
+    pub rule: WeightingRule,
     /// Samples of the model
     #[command(flatten)]
     pub draws: SampleFileOptions,
@@ -314,9 +314,9 @@ impl TraceRequest {
     }
 }
 
-fn rule(name: &str) -> Result<Rule, String> {
-    let names = Rule::ALL.map(Rule::as_str);
-    Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &names))
+fn rule(name: &str) -> Result<WeightingRule, String> {
+    let names = WeightingRule::ALL.map(WeightingRule::as_str);
+    WeightingRule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &names))
 }
 
 /// Effect of this name; `option` is the option in which it was given.
@@ -378,7 +378,7 @@ pub struct PredictRequest {
     pub form: bool,
     /// Method whose estimate in fit.json is used [default: that of the verdict, or the next with a covariance]
     #[arg(long, value_name = "ID", hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::methods))]
+        value_parser = completed(StringValueParser::new(), completed::method_names))]
     pub method: Option<String>,
     /// Predict for calm weather, without the random yaw moment and the steady wind of the records
     #[arg(long)]

@@ -41,8 +41,8 @@ const MIN_FORECAST_S: f64 = 10.0;
 /// Minimum elapsed time for a forecast: the first steps are slower than later ones.
 const MIN_ELAPSED: Duration = Duration::from_secs(1);
 
-/// Known number of steps of about equal duration.
-pub struct ProgressStages {
+/// Progress over a known number of steps of about equal duration.
+pub struct ProgressSteps {
     bar: ProgressBar,
     label: &'static str,
     most: u64,
@@ -52,7 +52,7 @@ pub struct ProgressStages {
     is_told: AtomicBool,
 }
 
-impl ProgressStages {
+impl ProgressSteps {
     /// Progress over `most` steps, of which `done` are complete; `side_by_side` run at a time.
     pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
         Self {

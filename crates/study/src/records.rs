@@ -9,11 +9,11 @@ use ship::angle::KNOT;
 use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
 use trial::file::{STDIN, display_path};
-use trial::{Channel, Log, Origin, ReadError, ReadRecord, Sidecar, SidecarError, Trial};
+use trial::{Channel, Log, ReadError, ReadRecord, RecordOrigin, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::failure::{Failure, FailureParts, OnPath};
-use campaign::identified_ship::RecordFacts;
+use campaign::identified_ship::MethodIndependentResults;
 use campaign::outside_estimates::TRIALS_FILE;
 use campaign::scenario::name;
 
@@ -71,12 +71,12 @@ pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &m
     name::study_name(display_path(path))?;
     let sidecar = Sidecar::path_for(path, columns);
     let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
-    warnings.extend(source(display_path(path)).attach_to(std::mem::take(&mut log.warnings)));
+    warnings.extend(warning_source(display_path(path)).attach_to(std::mem::take(&mut log.warnings)));
     Ok(log)
 }
 
 /// A record as the source of warnings; `path` is its name in messages.
-pub fn source(path: &Path) -> WarningSource {
+pub fn warning_source(path: &Path) -> WarningSource {
     WarningSource::Record(path.display().to_string())
 }
 
@@ -148,7 +148,7 @@ pub fn trial_from_log(
     };
     let ship = ship(&log, path, options, warnings)?;
     let ReadRecord { trial, warnings: reader_warnings } = log.into_trial(ship).map_err(refused)?;
-    warnings.extend(source(path).attach_to(reader_warnings));
+    warnings.extend(warning_source(path).attach_to(reader_warnings));
     with_declared(trial, path, options)
 }
 
@@ -226,12 +226,12 @@ fn ship(
         return Err(Failure::in_file(path, format!("the record has no speed; {advice}")));
     };
     let text = format!("the approach speed is taken from the record, {} kn in its first tenth", fixed(speed / KNOT, 2));
-    warnings.push(WarningCode::Scale, source(path), text);
+    warnings.push(WarningCode::Scale, warning_source(path), text);
     Ok(Some(Particulars { length, speed }))
 }
 
 /// Warning if records with a speed or positions give no track, with the reason.
-pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
+pub fn missing_track_warning(shown: &MethodIndependentResults) -> Option<Warning> {
     shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
@@ -254,7 +254,7 @@ pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning>
     let narrow = "given twice with the same content; it counts twice, and the intervals are too narrow";
     let idle = "used for identification and for validation; the error on it validates nothing";
     let all = twice.map(|trial| (trial, narrow)).chain(in_both.map(|trial| (trial, idle)));
-    all.map(|(trial, text)| Warning::new(WarningCode::Repetition, source_of(trial), text)).collect()
+    all.map(|(trial, text)| Warning::new(WarningCode::Repetition, warning_source_of(trial), text)).collect()
 }
 
 /// Unique names: the given ones, with a number if several are equal.
@@ -279,15 +279,15 @@ pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
 }
 
 /// A record as the source of warnings.
-pub fn source_of(trial: &Trial) -> WarningSource {
+pub fn warning_source_of(trial: &Trial) -> WarningSource {
     WarningSource::Record(file_and_hash(trial).0.to_owned())
 }
 
 /// Path and hash of a measured record.
 pub fn file_and_hash(trial: &Trial) -> (&str, &str) {
     match trial.origin() {
-        Origin::Measured { file, sha256 } => (file, sha256),
-        Origin::Simulated { scenario, .. } => (scenario, ""),
+        RecordOrigin::Measured { file, sha256 } => (file, sha256),
+        RecordOrigin::Simulated { scenario, .. } => (scenario, ""),
     }
 }
 

@@ -41,7 +41,7 @@ impl RescaledRecords {
         let scale_part = |(scale, ship): (usize, &Particulars)| {
             let count = scales.indices.iter().filter(|record| **record == scale).count();
             let records = if count == 1 { "record" } else { "records" };
-            let factor = significant(ship.factor_to(first, [1, 0]), 4);
+            let factor = significant(ship.similarity_factor_to(first, [1, 0]), 4);
             let times = if scale == 0 { String::new() } else { format!(", time × {factor}") };
             format!("{count} {records} of {}{times}", scale_name(*ship))
         };

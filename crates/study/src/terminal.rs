@@ -5,14 +5,14 @@ use std::sync::OnceLock;
 use campaign::Observer;
 use campaign::failure::Failure;
 
-use crate::progress::ProgressStages;
+use crate::progress::ProgressSteps;
 use crate::{interrupt, screen};
 
 /// Observer that reports progress on the terminal.
 pub struct Terminal {
     quiet: bool,
     label: &'static str,
-    steps: OnceLock<ProgressStages>,
+    steps: OnceLock<ProgressSteps>,
 }
 
 impl Terminal {
@@ -26,7 +26,7 @@ impl Observer for Terminal {
     fn begin(&self, most: u64, done: u64) {
         interrupt::set_graceful_stop(true);
         let threads = rayon::current_num_threads();
-        self.steps.get_or_init(|| ProgressStages::new(self.label, most, done, threads, self.quiet));
+        self.steps.get_or_init(|| ProgressSteps::new(self.label, most, done, threads, self.quiet));
     }
 
     fn advance(&self) {

@@ -15,9 +15,9 @@ use ship::{Regressor, Response};
 use trial::{Channel, Trial};
 
 use crate::average::{AveragedModel, ModelAverage};
-use crate::base::Base;
+use crate::base::FittedBase;
 use crate::candidates;
-use crate::comparison::{RecordComparison, ReplayResult, initial_states, replay_base};
+use crate::comparison::{RecordComparison, ReplayResult, initial_state_guesses, replay_base};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::{self, FullModel};
@@ -162,7 +162,7 @@ fn analyse(
     let (trials, rudder_noises) = rudder::estimate_rudders(trials);
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
-    let base = Base::fit(&trials)?;
+    let base = FittedBase::fit(&trials)?;
     let time = candidates::ship_time(&trials, base.estimate.response.K_over_T);
     let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let candidates = candidates_of(&records, &trials, time, settings)?;
@@ -217,7 +217,7 @@ fn analyse(
 /// Full model and weighted structures under the most probable noise law.
 fn weighed(
     problem: &FittedRecords,
-    base: &Base,
+    base: &FittedBase,
     candidates: &[Arc<Term>],
     trials: &[Trial],
     settings: &Settings,
@@ -240,7 +240,7 @@ fn weighed(
     if calm.1.ship_mean_square() < best.1.ship_mean_square() { calm } else { best }
 }
 
-/// Candidate terms of the selection; fails if a requested effect is not among them.
+/// Candidate terms that the selection admits; fails if a required effect is not among them.
 fn candidates_of(
     records: &[PreparedRecord],
     trials: &[Trial],
@@ -256,7 +256,7 @@ fn candidates_of(
 /// Comparisons of base and average on the fitted records, and `true` if the replay of the base is kept.
 fn compare_fitted(
     trials: &[Trial],
-    base: &Base,
+    base: &FittedBase,
     law: &NoiseLaw,
     members: &[(f64, &StructureFit)],
     hulls: &[HullEstimate],
@@ -270,7 +270,7 @@ fn compare_fitted(
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
-        let mut after = averaged.replay_on(trial, &record, &initial_states(trial, response), depth)?;
+        let mut after = averaged.replay_on(trial, &record, &initial_state_guesses(trial, response), depth)?;
         if is_base {
             // No effect is added: keep the closed-form replay of the base.
             let band = after.band;

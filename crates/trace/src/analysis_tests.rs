@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use document::trace::Dependence;
 use ship::angle::to_deg;
 use ship::effects::{Effect, Formula, listed_effect};
-use trial::{Conditions, DeclaredWeather, Trial};
+use trial::{DeclaredConditions, DeclaredWeather, Trial};
 
 use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
-use crate::{Analysis, EffectId, Rule, Selection, Settings, Verdict, Watcher, trace, trace_with_watcher};
+use crate::{Analysis, EffectId, Selection, Settings, Verdict, Watcher, WeightingRule, trace, trace_with_watcher};
 
 /// Record of a ship whose damping grows with the cube of its yaw rate.
 fn damped(plan: TrialPlan) -> Trial {
@@ -213,7 +213,7 @@ fn a_formula_is_named_where_it_acts() {
 #[test]
 fn both_rules_name_what_is_clear() {
     let trial = damped(TrialPlan::default());
-    for rule in Rule::ALL {
+    for rule in WeightingRule::ALL {
         let settings = Settings { rule, is_thorough: false, ..Settings::default() };
         let analysis = trace(std::slice::from_ref(&trial), &[], &settings).expect("a base");
         assert_eq!(named(&analysis), ["nonlinear_damping"], "{}", rule.as_str());
@@ -288,7 +288,7 @@ fn a_random_moment_is_a_disturbance_and_in_a_calm_unexplained() {
     assert!(disturbance.heading_error_share > 0.6, "{disturbance:?}");
     assert!(document.headline.contains("the ship was disturbed"), "{}", document.headline);
     let weather = Some(DeclaredWeather::Calm);
-    let becalmed = walking.with_conditions(Conditions { weather, ..Conditions::default() });
+    let becalmed = walking.with_conditions(DeclaredConditions { weather, ..DeclaredConditions::default() });
     let document = traced(&[becalmed]).document;
     assert_eq!(document.verdict, Verdict::Unexplained, "{}", document.headline);
     let wind = document.candidates.iter().find(|candidate| candidate.id == "wind_moment").expect("on the list");

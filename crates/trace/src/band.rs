@@ -83,8 +83,9 @@ struct ResidualSampler {
     white: Vec<f64>,
     /// Sensitivities of the heading to the fitted parameters.
     columns: Vec<Vec<f64>>,
-    /// Sensitivities to the initial state, and the inverse of their Gram matrix.
+    /// Sensitivities of the heading to the initial state.
     state: [Vec<f64>; 2],
+    /// Inverse of the Gram matrix of these sensitivities.
     inverse: Matrix2<f64>,
     errors: ParameterErrors,
 }

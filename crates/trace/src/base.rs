@@ -8,14 +8,14 @@ use crate::settings::TraceError;
 
 /// First-order response fitted to some records.
 #[derive(Debug, Clone)]
-pub struct Base {
+pub struct FittedBase {
     /// K, T and δ_r by `output-error`, which is global in 1/T.
     pub estimate: Estimate,
     /// Replays of the records.
     pub replays: Vec<Replay>,
 }
 
-impl Base {
+impl FittedBase {
     /// Fits the first-order base; fails if `output-error` gives no estimate or a replay diverges.
     pub fn fit(trials: &[Trial]) -> Result<Self, TraceError> {
         let method = output_error::Settings::default().build().expect("default settings are valid");

@@ -22,10 +22,10 @@ pub const PRIOR_PROBABILITY_MOTION_EFFECT: f64 = 0.5;
 /// Prior probability of a moment that depends on time, in one record: such a moment resembles noise.
 pub const PRIOR_PROBABILITY_TIME_MOMENT: f64 = 0.001;
 
-/// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2).
+/// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2); `gain` is K/T, 1/s².
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
-    let time = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.time()).filter(|t| t.is_normal()));
-    time.unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
+    let mut times = trials.iter().filter_map(Trial::particulars).map(|ship| ship.ship_length_time());
+    times.find(|time| time.is_normal()).unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
 /// Scales of the manoeuvres in some records; `span` is the duration of `record`.
@@ -128,7 +128,7 @@ pub fn mean_square<'a>(
 
 #[cfg(test)]
 mod tests {
-    use trial::{Conditions, DeclaredWeather};
+    use trial::{DeclaredConditions, DeclaredWeather};
 
     use super::*;
     use crate::testing::{TrialPlan, record, ship};
@@ -137,7 +137,7 @@ mod tests {
 
     fn trials() -> [Trial; 2] {
         let trial = record(&ship(Vec::new()), TrialPlan::default());
-        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        let calm = DeclaredConditions { weather: Some(DeclaredWeather::Calm), ..DeclaredConditions::default() };
         [trial.clone().with_conditions(calm), trial]
     }
 

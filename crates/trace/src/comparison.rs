@@ -134,7 +134,7 @@ impl RecordComparison {
 }
 
 /// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, of the base, as measured.
-pub fn initial_states(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
+pub fn initial_state_guesses(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
     let mut starts = vec![[heading, 0.0]];
@@ -167,7 +167,7 @@ impl AveragedModel<'_> {
         let record = PreparedRecord::unaveraged(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
         let mut before = replay_base(trial, &record, base, depth)?;
-        let mut starts = initial_states(trial, base);
+        let mut starts = initial_state_guesses(trial, base);
         starts.push(before.replay.initial());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {

@@ -165,7 +165,7 @@ impl<R: EffectReal> EffectEquations<R> for Monomial {
             let (x, exponent) = (factors[k] / self.size[k], self.powers.exponents[k]);
             if self.powers.magnitude[k] { x.powi(exponent - 1) * x.abs() } else { x.powi(exponent) }
         };
-        (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
+        (0..factors.len()).fold(now.K_over_T * p[0], |product, k| product * power(k))
     }
 }
 

@@ -194,8 +194,9 @@ struct PosteriorSearch<'a> {
     structure: &'a Structure,
     weights: &'a RecordWhitening,
     priors: Vec<Prior>,
-    /// Point evaluated last, and point accepted last.
+    /// Point evaluated last.
     last: FitPoint,
+    /// Point accepted last.
     kept: FitPoint,
 }
 
@@ -249,7 +250,7 @@ pub fn normal_equations(
     theta: &[f64],
     weights: &RecordWhitening,
 ) -> NormalEquations {
-    let (mut normal, _) = linear.normal(weights);
+    let (mut normal, _) = linear.normal_equations(weights);
     for (k, (prior, value)) in structure.fitted_priors(theta).into_iter().enumerate() {
         normal.matrix[(k, k)] += prior_precision(prior);
         normal.gradient[k] -= prior_deviation(prior, value) * prior_precision(prior).sqrt();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use ship::FirstOrder;
 
-use crate::base::Base;
+use crate::base::FittedBase;
 use crate::candidates::is_alternative;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
@@ -33,7 +33,7 @@ pub struct FullModel {
 /// of the base without any candidate. Laws that agree are fitted once.
 pub fn fit(
     problem: &FittedRecords,
-    base: &Base,
+    base: &FittedBase,
     candidates: &[Arc<Term>],
     with_waves: bool,
     kinds: &[CorrelatedNoise],
@@ -86,7 +86,7 @@ pub fn fit(
 }
 
 /// Base without candidates and the noise law of the residual, as if all misfit were weather.
-fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[CorrelatedNoise]) -> FullModel {
+fn base_only(problem: &FittedRecords, base: &FittedBase, with_waves: bool, kinds: &[CorrelatedNoise]) -> FullModel {
     let structure = Structure::base(problem.records.len(), problem.time);
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
     let theta = start_point(&structure, &base.estimate.response, std::iter::empty());
@@ -101,7 +101,7 @@ fn base_only(problem: &FittedRecords, base: &Base, with_waves: bool, kinds: &[Co
 /// Fit of the base and the stationary candidates, the better of two starts (prior means, neutral values).
 fn fit_stationary(
     problem: &FittedRecords,
-    base: &Base,
+    base: &FittedBase,
     structure: &Structure,
     weights: &RecordWhitening,
 ) -> StructureFit {

@@ -26,13 +26,16 @@ pub const MIN_HEADING_SD_RAD: f64 = 1.75e-5;
 /// rows is estimated.
 const BEND_SHARE: f64 = 0.05;
 
-/// Bounds of the level of a colour (heading variance over the variance of a row), and number of points of the search
-/// grid.
+/// Bounds of the level of a colour: its heading variance over the variance of a row.
 const LEVELS: [f64; 2] = [1e-2, 1e9];
+
+/// Number of points of the search grid of the level.
 const GRID: usize = 6;
 
-/// Number of levels at which every kind of colour is screened, and number of kinds whose level is then refined.
+/// Number of levels at which every kind of colour is screened.
 const COARSE_GRID: i32 = 4;
+
+/// Number of kinds of colour whose level is refined after the screening.
 const FINALISTS: usize = 3;
 
 /// Number of iterations of the noise variances for a colour.
@@ -41,8 +44,8 @@ const ROUNDS: usize = 2;
 /// Lower bounds of the noise variance of the records, rad², from the sampling of the rudder.
 ///
 /// A corner of the rudder between two rows is cut, which changes the integral of the rudder by up to an eighth of its
-/// second difference times the step, and the heading by that times K.
-pub fn min_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
+/// second difference times the step, and the heading by about that times (K/T)(L/U). `gain` is K/T, 1/s².
+pub fn min_noise_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
     let floor = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
@@ -76,11 +79,11 @@ impl<'a> LinearisedFit<'a> {
         });
         let mut prior: Vec<(f64, f64)> = prior.collect();
         prior.resize(linear.unknowns, (0.0, 0.0));
-        Self { problem, linear, prior, floors: min_variances(problem, fit.theta[1]) }
+        Self { problem, linear, prior, floors: min_noise_variances(problem, fit.theta[1]) }
     }
 
     /// Law with the least criterion among the given kinds, with the waves and the start variances of the law `start`.
-    pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
+    pub fn select_noise_law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
         let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
@@ -95,7 +98,7 @@ impl<'a> LinearisedFit<'a> {
     /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` if the
     /// precision is singular.
     pub fn solve(&self, weights: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-        let (mut normal, _) = self.linear.normal(weights);
+        let (mut normal, _) = self.linear.normal_equations(weights);
         self.add_prior(&mut normal);
         let factor = normal.matrix.cholesky()?;
         let step = factor.solve(&normal.gradient);
@@ -133,7 +136,7 @@ impl<'a> LinearisedFit<'a> {
         let alone = Linearisation { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
         let weights =
             RecordWhitening { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
-        alone.normal(&weights)
+        alone.normal_equations(&weights)
     }
 
     /// Updated variances and the criterion at the old variances; `None` if the precision is singular.
@@ -208,7 +211,7 @@ pub fn estimate(
 ) -> EstimatedNoiseLaw {
     let linearised = LinearisedFit::new(problem, fit);
     let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
-    let mut best = linearised.law(&start, kinds);
+    let mut best = linearised.select_noise_law(&start, kinds);
     if with_waves && let Some(sea) = waves::estimate_waves(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [

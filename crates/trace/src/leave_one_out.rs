@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::average::AveragedModel;
-use crate::base::Base;
+use crate::base::FittedBase;
 use crate::comparison::RecordComparison;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
@@ -31,7 +31,7 @@ pub fn leave_one_out(
 ) -> Vec<Option<RecordComparison>> {
     watcher.begin_folds(trials.len());
     let fold = |omitted: usize| -> Option<RecordComparison> {
-        let base = Base::fit(&without(trials, omitted)).ok()?;
+        let base = FittedBase::fit(&without(trials, omitted)).ok()?;
         let kept =
             FittedRecords::new(without(&problem.records, omitted), base.estimate.response.inverse_T, problem.time);
         let law = NoiseLaw {

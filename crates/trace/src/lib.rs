@@ -45,7 +45,7 @@ pub use analysis::{Analysis, trace, trace_with_watcher, without_spikes};
 pub use document::trace::{Document, Verdict};
 pub use residual_analysis::{Innovations, SIGNIFICANCE_LEVEL};
 pub use selection::{EffectId, Selection};
-pub use settings::{Rule, Settings, TraceError};
+pub use settings::{Settings, TraceError, WeightingRule};
 pub use watcher::Watcher;
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ pub struct Linearisation {
 
 impl Linearisation {
     /// Normal equations under weights, and |e|² of every record.
-    pub fn normal(&self, weights: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
+    pub fn normal_equations(&self, weights: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let (mut normal, mut squares) = (NormalEquations::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
             let HeadingSensitivities { residual, columns } = block.white(record, weights);

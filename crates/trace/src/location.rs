@@ -143,7 +143,7 @@ impl NamedStructures<'_> {
     /// [`MAX_P_VALUE`].
     fn is_supported(&self, effect: &EffectNaming) -> bool {
         let (id, _, record) = effect.term;
-        let is_gain = self.structures.effect_evidence(id, record).gain > 0.0 || !effect.aliases.is_empty();
+        let is_gain = self.structures.effect_evidence(id, record).log_ratio > 0.0 || !effect.aliases.is_empty();
         is_gain && self.p_value(effect.term).is_none_or(|p_value| p_value < MAX_P_VALUE)
     }
 

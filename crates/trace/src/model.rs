@@ -19,8 +19,10 @@ use crate::record::PreparedRecord;
 /// constant.
 const MAX_STEPS_PER_ROW: f64 = 8.0;
 
-/// Prior standard deviations of the rudder bias, and of the deviation in one record, rad.
+/// Prior standard deviation of the rudder bias, rad.
 const BIAS_SD: f64 = 0.06;
+
+/// Prior standard deviation of the departure of one record from the rudder bias, rad.
 const RECORD_BIAS_SD: f64 = 0.01;
 
 /// Prior standard deviations of 1/T and K/T in units of U/L and U²/L²; the values of ships are well within.
@@ -35,7 +37,7 @@ pub struct Term {
     pub record_index: Option<usize>,
     /// Priors of the parameters.
     pub priors: Vec<Prior>,
-    /// Log prior odds.
+    /// Log prior odds of the term.
     pub log_odds: f64,
 }
 
@@ -161,7 +163,7 @@ impl Structure {
     }
 
     /// Index of the unknown of every entry of θ; `None` for a fixed entry.
-    pub fn unknowns(&self) -> Vec<Option<usize>> {
+    pub fn unknown_indices(&self) -> Vec<Option<usize>> {
         let mut unknowns = vec![None; self.count()];
         self.fitted_indices().into_iter().enumerate().for_each(|(unknown, place)| unknowns[place] = Some(unknown));
         unknowns

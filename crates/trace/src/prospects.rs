@@ -79,13 +79,13 @@ impl Analysis {
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
-        let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal(&problem.weights(&law));
+        let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal_equations(&problem.weights(&law));
         let fitted = full.record_covariance(None)?.try_inverse()?;
         let count = fitted.nrows();
         let mut precision = normal.matrix;
         precision.view_mut((0, 0), (count, count)).zip_apply(&fitted, |sum, fitted| *sum += fitted);
         let covariance = regular(precision)?;
-        let places = structure.unknowns();
+        let places = structure.unknown_indices();
         let visibility = |(term, range): (&Arc<Term>, Range<usize>)| {
             let squares = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
                 let place = places[place].filter(|_| !prior.is_shape)?;

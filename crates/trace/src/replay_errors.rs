@@ -30,8 +30,10 @@ const MIN_LAST_PIECE: f64 = 0.5;
 /// Minimum number of headings in a window: two are used up by its initial state.
 const MIN_HEADINGS: usize = 4;
 
-/// Maximum number of Gauss–Newton steps for an initial state, and of step lengths tried in each.
+/// Maximum number of Gauss–Newton steps for an initial state.
 const MAX_STEPS: usize = 12;
+
+/// Maximum number of step lengths tried in a Gauss–Newton step.
 const MAX_STEP_LENGTHS: i32 = 10;
 
 /// Tolerance of equal initial states: of the heading, and of the yaw rate times the duration, rad.
@@ -71,7 +73,8 @@ pub struct ReplayErrors {
     pub overshoot: Option<f64>,
     /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
-    /// Heading errors with a fitted moment of the record, on held-out records.
+    /// Heading errors after a moment is fitted to this record in addition to its initial state; `None` except in a
+    /// thorough comparison on a held-out record.
     pub fitted_moment_errors: Option<MomentErrors>,
 }
 

@@ -13,7 +13,7 @@ use ship::particulars::prime_unit;
 use ship::{Particulars, Regressor};
 use trial::Trial;
 
-use crate::base::Base;
+use crate::base::FittedBase;
 use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_barred_by_calm};
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
@@ -38,7 +38,7 @@ pub struct TraceParts<'a> {
     /// Settings of the trace.
     pub settings: &'a Settings,
     /// First-order base with its replays.
-    pub base: &'a Base,
+    pub base: &'a FittedBase,
     /// Full model with its noise law.
     pub full: &'a FullModel,
     /// Structures with their probabilities.
@@ -117,7 +117,7 @@ impl TraceParts<'_> {
             },
             disturbance,
             located,
-            residual: ResidualEntry {
+            residual: ResidualWhitenessEntry {
                 before: self.whiteness(|comparison| &comparison.before),
                 after: self.whiteness(|comparison| &comparison.after),
             },
@@ -254,9 +254,9 @@ impl TraceParts<'_> {
                 parameters: self.term_parameters(naming.term),
                 probability: naming.probability,
                 probability_by_prior_odds: self.by_prior_odds(|name| naming.includes(name)),
-                delta_bic: -2.0 * support.gain,
+                delta_bic: -2.0 * support.log_ratio,
                 p_value: support.p_value,
-                evidence: sentences::evidence(naming, support.gain, asked, self.trials),
+                evidence: sentences::evidence(naming, support.log_ratio, asked, self.trials),
                 aliases,
             }
         };
@@ -275,7 +275,7 @@ impl TraceParts<'_> {
             (parameter.symbol.into(), self.number(parameter, Quantity::without_uncertainty(value), None, false))
         });
         let gain = self.full.waves_gain;
-        let probability = |factor: f64| prior_odds::probability_from_gain(0.5 * gain, factor);
+        let probability = |factor: f64| prior_odds::probability_from_log_ratio(0.5 * gain, factor);
         Some(EffectEntry {
             id: waves.id().into(),
             form: waves.form().into(),
@@ -353,7 +353,7 @@ impl TraceParts<'_> {
             only: self.record_name(record),
             outcome,
             probability: self.structures.probabilities.get(&name).map_or(0.0, |weight| weight.clamp(0.0, 1.0)),
-            delta_bic: support.map(|support| -2.0 * support.gain.clamp(-1e6, 1e6)),
+            delta_bic: support.map(|support| -2.0 * support.log_ratio.clamp(-1e6, 1e6)),
             p_value: support.map(|support| support.p_value),
             visibility,
         }

@@ -45,13 +45,17 @@ const MIN_ROWS_PER_PIECE: usize = 5;
 /// Maximum autocorrelation of noise about the pieces, at any of [`LAGS`] lags; above it the residual is a motion of the
 /// rudder.
 const MAX_AUTOCORRELATION: f64 = 0.15;
+
+/// Number of lags at which the autocorrelation is checked.
 const LAGS: usize = 10;
 
 /// Maximum gain in log likelihood of the recorded rudder; above it the recorded rudder is kept.
 const MIN_GAIN: f64 = 2.0;
 
-/// Unit of the search for a common divisor of the angles, deg, and the maximum divisor treated as rounding, deg.
+/// Unit of the search for a common divisor of the angles, deg.
 const UNIT_DEG: f64 = 0.5;
+
+/// Maximum divisor of the angles that is treated as rounding, deg.
 const MAX_ROUNDING_DEG: f64 = 2.0;
 
 /// Measurement error of the rudder of one record.
@@ -176,7 +180,8 @@ const MIN_CRITERION_DECREASE: f64 = 10.0;
 
 /// Full models whose noise laws contain at least the rudder noise.
 ///
-/// The rudder noise is a white moment; another law replaces it only if it explains the records far better.
+/// The rudder noise is a white moment; another law replaces it only if it explains the records far better. `gain` is
+/// K/T, 1/s².
 pub fn with_rudder_noise(
     fulls: Vec<FullModel>,
     problem: &FittedRecords,

@@ -41,7 +41,7 @@ impl EffectId {
 pub struct Selection {
     /// Required effects: in the model whatever their evidence.
     pub required: Vec<EffectId>,
-    /// Excluded effects.
+    /// Excluded effects: never candidates.
     pub excluded: Vec<EffectId>,
     /// `true` if effects that are not required are candidates.
     pub searches_effects: bool,

@@ -3,7 +3,7 @@
 use document::names;
 use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
 use ship::angle::to_deg;
-use trial::{Origin, Trial};
+use trial::{RecordOrigin, Trial};
 
 use crate::comparison::BandCoverage;
 use crate::naming::EffectNaming;
@@ -13,15 +13,15 @@ use crate::residual_peak::ResidualPeak;
 pub const KEPT_BASE_REASON: &str = "adding effects does not improve the replay; the misfit looks like a random yaw \
                                     moment, which no replay can reproduce";
 
-/// Reason for a trace without named effects.
+/// Reason for a trace that names no effect because no noise law describes the residual.
 pub const NO_NAMED_EFFECT_REASON: &str = "adding effects does not improve the replay, and no noise law describes the \
                                           residual, so no effect is named";
 
 /// File name of a measured trial, or scenario of a simulated one.
 pub fn record_label(trial: &Trial) -> String {
     match trial.origin() {
-        Origin::Measured { file, .. } => file.clone(),
-        Origin::Simulated { scenario, .. } => scenario.clone(),
+        RecordOrigin::Measured { file, .. } => file.clone(),
+        RecordOrigin::Simulated { scenario, .. } => scenario.clone(),
     }
 }
 
@@ -178,12 +178,12 @@ fn whole(errors: &ErrorsEntry) -> Option<f64> {
     Some(errors.heading_rmse_deg)
 }
 
-/// Sentence on the evidence for a named effect.
-pub fn evidence(named: &EffectNaming, gain: f64, asked: bool, trials: &[Trial]) -> String {
+/// Sentence on the evidence for a named effect, from its log evidence ratio.
+pub fn evidence(named: &EffectNaming, log_ratio: f64, asked: bool, trials: &[Trial]) -> String {
     let (id, form, record) = named.term;
     let effect = names::effect_form(id, form);
     let place = record.map_or(String::new(), |number| format!(" in {}", trials[number].title()));
-    let odds = match gain / std::f64::consts::LN_10 {
+    let odds = match log_ratio / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
         power if power < 0.0 => format!("{} times less probable", short(10f64.powf(-power))),
         power => format!("{} times more probable", short(10f64.powf(power))),

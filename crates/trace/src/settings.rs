@@ -10,16 +10,16 @@ use crate::selection::{EffectId, Selection};
 
 /// Weighting rule of the structures.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rule {
+#[serde(rename_all = "kebab-case", rename = "Rule")]
+pub enum WeightingRule {
     /// Marginal likelihood under the priors of all coefficients.
     #[default]
     Posterior,
-    /// exp(−BIC/2), with a penalty of ½ log n per parameter (Schwarz 1978).
+    /// exp(−BIC/2): a penalty of ½ log n per parameter, with n observed headings (Schwarz 1978).
     Bic,
 }
 
-impl Rule {
+impl WeightingRule {
     /// All rules.
     pub const ALL: [Self; 2] = [Self::Posterior, Self::Bic];
 
@@ -38,7 +38,7 @@ pub struct Settings {
     /// Minimum probability of a named effect.
     pub probability: f64,
     /// Weighting rule of the structures.
-    pub rule: Rule,
+    pub rule: WeightingRule,
     /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all`]).
     pub monomials: usize,
     /// Required and excluded effects.
@@ -57,7 +57,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             probability: 0.95,
-            rule: Rule::default(),
+            rule: WeightingRule::default(),
             monomials: 0,
             selection: Selection::default(),
             is_thorough: true,

@@ -21,7 +21,7 @@ pub struct Staircase {
     pub steps: Vec<StairStep>,
 }
 
-/// Model of one step.
+/// Step of a staircase: the term it adds, and the replay error of the model with it.
 #[derive(Debug, Clone)]
 pub struct StairStep {
     /// Term added to the step before; `None` for the base.

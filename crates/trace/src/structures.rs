@@ -15,7 +15,7 @@ use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
 use crate::selection::Selection;
-use crate::settings::Rule;
+use crate::settings::WeightingRule;
 use crate::weights::RecordWhitening;
 use quadratic::{MAX_LOG_ODDS, QuadraticPosterior};
 use result::names;
@@ -39,7 +39,7 @@ struct StructureSearch<'a> {
     full: &'a FullModel,
     variants: Vec<&'a Arc<Term>>,
     selection: &'a Selection,
-    rule: Rule,
+    rule: WeightingRule,
     /// Evaluated structures by the names of their terms.
     evaluated: BTreeMap<Vec<TermName>, WeighedStructure>,
     visibility: BTreeMap<TermName, f64>,
@@ -55,7 +55,7 @@ pub fn weigh_structures(
     fulls: Vec<FullModel>,
     candidates: &[Arc<Term>],
     selection: &Selection,
-    rule: Rule,
+    rule: WeightingRule,
     base: f64,
 ) -> (FullModel, Structures) {
     let penalty = 0.5 * (problem.observations() as f64).ln();
@@ -102,7 +102,7 @@ fn weigh(
     full: &FullModel,
     candidates: &[Arc<Term>],
     selection: &Selection,
-    rule: Rule,
+    rule: WeightingRule,
 ) -> Structures {
     let mut search = StructureSearch {
         problem,
@@ -275,12 +275,12 @@ impl StructureSearch<'_> {
         (structure.with_terms(terms), theta, initial)
     }
 
-    /// Log evidence plus log prior odds of a fit; [`Rule::Bic`] takes −BIC/2 for the evidence.
+    /// Log evidence plus log prior odds of a fit; [`WeightingRule::Bic`] takes −BIC/2 for the evidence.
     fn log_posterior(&self, fit: &StructureFit) -> f64 {
         let odds: f64 = fit.structure.terms.iter().map(|term| self.odds(term, 0.0)).sum();
         odds + match self.rule {
-            Rule::Posterior => fit.evidence,
-            Rule::Bic => {
+            WeightingRule::Posterior => fit.evidence,
+            WeightingRule::Bic => {
                 let free = fit.structure.entries().iter().filter(|entry| entry.prior.is_fitted()).count() as f64;
                 -0.5 * (fit.misfit + free * (self.problem.observations() as f64).ln())
             }

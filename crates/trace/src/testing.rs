@@ -10,7 +10,7 @@ use ship::dynamics::Dynamics;
 use ship::effects::Effect;
 use ship::replay::{RecordedSignals, replay};
 use ship::{Polyline, Response, ResponseModel};
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, RecordOrigin, Trial};
 
 /// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg.
 pub const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
@@ -83,7 +83,7 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
 /// Record of these columns, s and rad.
 pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
-    let origin = Origin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
     Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 

@@ -9,8 +9,10 @@ use crate::weights::NoiseLaw;
 /// Minimum frequency of waves over the fundamental of the manoeuvre; a lower band is treated as model structure.
 const MIN_FREQUENCY_RATIO: f64 = 5.0;
 
-/// Number of frequencies tried, damping ratios, and sizes over the white noise.
+/// Number of frequencies that are tried.
 const FREQUENCIES: usize = 30;
+
+/// Damping ratios that are tried.
 const DAMPINGS: [f64; 3] = [0.03, 0.08, 0.2];
 
 /// Maximum damping ratio of waves.
@@ -18,6 +20,8 @@ const MAX_DAMPING: f64 = 0.3;
 
 /// Minimum share of waves in the mean square residual; a smaller share is treated as sensor colour.
 const MIN_SHARE: f64 = 0.05;
+
+/// Standard deviations of the waves over that of the white noise that are tried.
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, or

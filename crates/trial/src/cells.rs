@@ -111,7 +111,7 @@ pub fn detect_separator(line: &str, score: impl Fn(&[&str]) -> usize) -> Separat
 
 /// Content of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell {
+pub enum CellContent {
     /// Finite number.
     Number(f64),
     /// Finite number written with a decimal comma.
@@ -122,7 +122,7 @@ pub enum Cell {
     Text,
 }
 
-impl Cell {
+impl CellContent {
     /// Number in either notation.
     pub fn number(self) -> Option<f64> {
         match self {
@@ -136,31 +136,31 @@ impl Cell {
 ///
 /// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
 /// displays it. Exponents may be written with `D` (Fortran).
-pub fn parse_cell(text: &str, separator: Separator) -> Cell {
+pub fn parse_cell(text: &str, separator: Separator) -> CellContent {
     match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => return Cell::Number(value),
-        Ok(value) if value.is_nan() => return Cell::Missing,
-        Ok(_) => return Cell::Text,
+        Ok(value) if value.is_finite() => return CellContent::Number(value),
+        Ok(value) if value.is_nan() => return CellContent::Missing,
+        Ok(_) => return CellContent::Text,
         Err(_) => {}
     }
     const MISSING_MARKS: [&str; 6] = ["", "na", "n/a", "null", "none", "-"];
     if MISSING_MARKS.iter().any(|word| text.eq_ignore_ascii_case(word)) {
-        return Cell::Missing;
+        return CellContent::Missing;
     }
     // Only digits, signs, one mark and an exponent: a word like "nand" must not become a number by replacing letters.
     if text.len() > 40 || !text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.,eEdD".contains(&byte)) {
-        return Cell::Text;
+        return CellContent::Text;
     }
     let has_comma = text.contains(',');
     // With commas as separators this cell was in quotes: three digits after its comma may be thousands.
     let may_be_thousands = || separator == Separator::Comma && text.len() - text.find(',').unwrap_or(0) == 4;
     if has_comma && (text.contains('.') || may_be_thousands()) {
-        return Cell::Text;
+        return CellContent::Text;
     }
     match text.replace(',', ".").replace(['d', 'D'], "e").parse::<f64>() {
-        Ok(value) if value.is_finite() && has_comma => Cell::CommaNumber(value),
-        Ok(value) if value.is_finite() => Cell::Number(value),
-        _ => Cell::Text,
+        Ok(value) if value.is_finite() && has_comma => CellContent::CommaNumber(value),
+        Ok(value) if value.is_finite() => CellContent::Number(value),
+        _ => CellContent::Text,
     }
 }
 
@@ -204,19 +204,19 @@ mod tests {
 
     #[test]
     fn numbers_missing_values_and_text_are_told_apart() {
-        assert_eq!(parse_cell("-1.5e2", Separator::Comma), Cell::Number(-150.0));
-        assert_eq!(parse_cell(".000000000", Separator::Blank), Cell::Number(0.0));
-        assert_eq!(parse_cell("1.5D+02", Separator::Blank), Cell::Number(150.0));
-        assert_eq!(parse_cell("1,5", Separator::Semicolon), Cell::CommaNumber(1.5));
+        assert_eq!(parse_cell("-1.5e2", Separator::Comma), CellContent::Number(-150.0));
+        assert_eq!(parse_cell(".000000000", Separator::Blank), CellContent::Number(0.0));
+        assert_eq!(parse_cell("1.5D+02", Separator::Blank), CellContent::Number(150.0));
+        assert_eq!(parse_cell("1,5", Separator::Semicolon), CellContent::CommaNumber(1.5));
         // The cell is in quotes, otherwise there would be two; three digits after the comma may be thousands.
-        assert_eq!(parse_cell("1,5", Separator::Comma), Cell::CommaNumber(1.5));
-        assert_eq!(parse_cell("1,500", Separator::Comma), Cell::Text);
-        assert_eq!(parse_cell("1.234,5", Separator::Semicolon), Cell::Text);
+        assert_eq!(parse_cell("1,5", Separator::Comma), CellContent::CommaNumber(1.5));
+        assert_eq!(parse_cell("1,500", Separator::Comma), CellContent::Text);
+        assert_eq!(parse_cell("1.234,5", Separator::Semicolon), CellContent::Text);
         for missing in ["", "NaN", "nan", "NA", "n/a", "-", "NULL"] {
-            assert_eq!(parse_cell(missing, Separator::Comma), Cell::Missing, "{missing}");
+            assert_eq!(parse_cell(missing, Separator::Comma), CellContent::Missing, "{missing}");
         }
         for text in ["inf", "-Infinity", "1e999", "abc", "12:30:05", "****", "d", "ed", "1 2"] {
-            assert_eq!(parse_cell(text, Separator::Blank), Cell::Text, "{text}");
+            assert_eq!(parse_cell(text, Separator::Blank), CellContent::Text, "{text}");
         }
     }
 }

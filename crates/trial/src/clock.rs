@@ -277,7 +277,8 @@ impl Clock {
         Some(date(self.day? + ((self.second + t) / SECONDS_PER_DAY).floor() as i64).to_string())
     }
 
-    /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0.
+    /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0. `None`
+    /// without a time of day, for an ambiguous date, or for a date on a clock without one.
     pub fn record_time(&self, stamp: &Stamp) -> Option<f64> {
         let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
@@ -304,8 +305,9 @@ pub struct StampConverter {
     first: Option<Stamp>,
     /// Last date, and its days after the first date.
     last: Option<(Date, i64)>,
-    /// Last second of the day, for stamps without a date, and the number of midnights passed.
+    /// Time of day of the last stamp without a date, s.
     last_second: f64,
+    /// Number of midnights passed, for stamps without a date.
     midnights: i64,
     /// `true` if the first of two numbers is the month, once a date determines it.
     month_first: Option<bool>,

@@ -43,7 +43,7 @@ pub enum DeclaredWeather {
 /// Source of the entries: MSC/Circ.1053 (2002), appendix 6.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Conditions {
+pub struct DeclaredConditions {
     /// Administration that receives the form of MSC/Circ.1053; texts have at most 100 characters. (text)
     pub administration: Option<String>,
     /// Container ship, tanker, gas carrier, ro-ro ship, bulk carrier, ... (text)
@@ -57,7 +57,7 @@ pub struct Conditions {
     /// Weather of the same sidecar.
     #[serde(skip)]
     pub weather: Option<DeclaredWeather>,
-    /// Ship, day and draughts of the trial, of the same sidecar.
+    /// Ship, date and draughts of the trial, of the same sidecar.
     #[serde(skip)]
     pub trial: TrialParticulars,
     /// Breadth of the ship; lengths are of the scale of [ship] length-m. (m)
@@ -144,7 +144,7 @@ fn draught_note(share: f64) -> String {
     format!(": the draught is {:.0} % of that at full load", 100.0 * share)
 }
 
-impl Conditions {
+impl DeclaredConditions {
     /// The same conditions without blanks around texts.
     pub(crate) fn without_blanks(mut self) -> Self {
         let Self {
@@ -257,14 +257,14 @@ impl Conditions {
 mod tests {
     use super::*;
 
-    fn deep_and_calm() -> Conditions {
-        Conditions {
+    fn deep_and_calm() -> DeclaredConditions {
+        DeclaredConditions {
             draught: Some(20.0),
             full_load_draught: Some(20.8),
             water_depth: Some(90.0),
             wind_beaufort: Some(5),
             sea_state: Some(4),
-            ..Conditions::default()
+            ..DeclaredConditions::default()
         }
     }
 
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn what_is_not_by_the_book_is_said() {
-        let message = |change: fn(&mut Conditions)| {
+        let message = |change: fn(&mut DeclaredConditions)| {
             let mut conditions = deep_and_calm();
             change(&mut conditions);
             let shortcomings = conditions.shortcomings();
@@ -291,7 +291,7 @@ mod tests {
         assert!(message(|c| c.full_load_draught = Some(25.0)).contains("80 %"));
         assert!(message(|c| c.full_load_draught = None).contains("the loading is not declared"));
         assert!(message(|c| c.declared_loading = Some(Loading::Partial)).contains("not at full load"));
-        let in_a_calm = Conditions {
+        let in_a_calm = DeclaredConditions {
             weather: Some(DeclaredWeather::Calm),
             wind_beaufort: None,
             sea_state: None,

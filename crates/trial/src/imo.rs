@@ -78,7 +78,7 @@ impl CriterionUnit {
 
 /// Criterion with its measured value.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Criterion {
+pub struct ImoCriterion {
     /// Name of the limited quantity.
     pub name: &'static str,
     /// Measured value, in `unit`; the verdict uses the value without its uncertainty.
@@ -89,7 +89,7 @@ pub struct Criterion {
     pub unit: CriterionUnit,
 }
 
-impl Criterion {
+impl ImoCriterion {
     /// Verdict: the measured value against the limit.
     pub fn verdict(&self) -> CriterionVerdict {
         match self.measured {
@@ -106,7 +106,7 @@ impl Criterion {
 ///
 /// The distance of the initial turning is the integral of the recorded speed, or V t_a if the speed was not
 /// recorded; the latter is slightly long, because a ship loses speed as it begins to turn.
-pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
+pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<ImoCriterion> {
     let is_pair =
         |angle_deg: f64| zigzag.nominal_angles.is_some_and(|pair: NominalAngles| pair.is_deg(angle_deg, angle_deg));
     let is_straight = zigzag.straight_yaw_rate().is_some();
@@ -119,7 +119,7 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
         let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
         Quantity::new(way / length, time.sd.map(|sd| sd * speed / length))
     });
-    let criterion = |name, measured, limit, unit| Criterion { name, measured, limit, unit };
+    let criterion = |name, measured, limit, unit| ImoCriterion { name, measured, limit, unit };
     let [first, second] = [first_overshoot_10_10_limit_deg(particulars), second_overshoot_10_10_limit_deg(particulars)];
     vec![
         criterion("10/10 first overshoot", overshoot(10.0, 1), first, CriterionUnit::Degrees),
@@ -154,12 +154,12 @@ mod tests {
         }
     }
 
-    fn table(delta_deg: f64, psi_deg: f64) -> Vec<Criterion> {
+    fn table(delta_deg: f64, psi_deg: f64) -> Vec<ImoCriterion> {
         let (time, heading, rudder) = Plant::new(delta_deg, psi_deg, 2.5).record(300.0, 1.0);
         criteria(&ZigZag::from_trial(&trial(time, heading, rudder)).expect("a zig-zag"), YUKUN)
     }
 
-    fn values(table: &[Criterion]) -> Vec<Option<f64>> {
+    fn values(table: &[ImoCriterion]) -> Vec<Option<f64>> {
         table.iter().map(|criterion| criterion.measured.map(|quantity| quantity.value)).collect()
     }
 
@@ -174,7 +174,7 @@ mod tests {
         assert_relative_eq!(measured[3].expect("10/10"), 1.97, epsilon = 0.01);
         let verdicts: Vec<String> = ten.iter().map(|criterion| criterion.verdict().to_string()).collect();
         assert_eq!(verdicts, ["pass", "pass", "not measured", "pass"]);
-        assert_eq!(Criterion { limit: 6.0, ..ten[0].clone() }.verdict(), CriterionVerdict::Fail);
+        assert_eq!(ImoCriterion { limit: 6.0, ..ten[0].clone() }.verdict(), CriterionVerdict::Fail);
 
         let twenty = values(&table(20.0, 20.0));
         assert_eq!((twenty[0], twenty[1], twenty[3]), (None, None, None));

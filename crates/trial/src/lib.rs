@@ -49,13 +49,13 @@ pub mod writer;
 pub mod zigzag;
 
 pub use channel::Channel;
-pub use conditions::{Conditions, DeclaredWeather, Loading};
+pub use conditions::{DeclaredConditions, DeclaredWeather, Loading};
 pub use document::Quantity;
 pub use file::FileError;
 pub use manoeuvre::Manoeuvre;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::wind::relative_wind;
-pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
+pub use record::{Columns, Corner, Noise, RecordOrigin, RejectedReading, Trial, TrialError};
 pub use scale::{ScaleError, Scales};
 pub use sidecar::{Sidecar, SidecarError};
 pub use trial_particulars::TrialParticulars;

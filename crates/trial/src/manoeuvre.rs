@@ -96,7 +96,8 @@ pub enum Manoeuvre {
         /// Time from the order amidships to the end, s.
         duration: f64,
     },
-    /// Steady turns up to a rudder to either side, their unstable branch included; computed, not steered.
+    /// Spiral curve: steady turns at rudder angles up to `rudder` on either side, unstable branch included; computed,
+    /// not steered.
     #[serde(skip)]
     Spiral {
         /// Maximum rudder angle, rad.

@@ -1,4 +1,4 @@
-//! Noise parameters of a record: compass, gyro, rudder and random yaw moment.
+//! Noise parameters of a record: compass, rate gyro, rudder and random yaw moment.
 
 pub use document::MomentKind;
 
@@ -9,7 +9,7 @@ pub struct NoiseModel {
     pub heading_sd: f64,
     /// Correlation time of the compass error, s; `None` for white.
     pub heading_correlation: Option<f64>,
-    /// Standard deviation of the white gyro error, rad/s; used if a record has a yaw rate.
+    /// Standard deviation of the white rate-gyro error, rad/s; used if a record has a yaw rate.
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
     pub moment: MomentKind,

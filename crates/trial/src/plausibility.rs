@@ -21,7 +21,7 @@ use crate::channel::Channel;
 use crate::record::{RejectedReading, Trial};
 use crate::wording::counted;
 use alternation::sensor_disagreement;
-pub use motion::reversals;
+pub use motion::count_reversals;
 pub(crate) use motion::{changes, extremes, mean_rate, range};
 use regression::{PartialSlope, first_order_gain, heading_on_yaw_rate, steady_turn_gain};
 use rudder::rudder_movements;
@@ -211,9 +211,9 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
              heading_rad"
         ))));
     }
-    let reversals = reversals(trial.rudder());
+    let reversals = count_reversals(trial.rudder());
     if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
-        return Err(match trial.heading_from_yaw_rate() {
+        return Err(match trial.is_heading_integrated() {
             true => Implausible::YawRateInMinutes { heading_deg, rudder_deg },
             false => Implausible::HeadingInDegrees { heading_deg, rudder_deg },
         });

@@ -13,7 +13,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{Conditions, DeclaredWeather, MAX_READING_INTERVAL_S, Shortcoming};
+use crate::conditions::{DeclaredConditions, DeclaredWeather, MAX_READING_INTERVAL_S, Shortcoming};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
@@ -21,7 +21,7 @@ pub use corners::Corner;
 
 /// Origin of a record.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Origin {
+pub enum RecordOrigin {
     /// Simulated: the scenario and the position of the trial in it.
     Simulated {
         /// Name of the scenario.
@@ -43,11 +43,11 @@ pub enum Origin {
 /// Declared standard deviations of the sensors; `None` if undeclared.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Noise {
-    /// Heading, rad.
+    /// Standard deviation of the heading, rad.
     pub heading: Option<f64>,
-    /// Yaw rate, rad/s.
+    /// Standard deviation of the yaw rate, rad/s.
     pub yaw_rate: Option<f64>,
-    /// Rudder angle, rad.
+    /// Standard deviation of the rudder angle, rad.
     pub rudder: Option<f64>,
 }
 
@@ -113,13 +113,13 @@ pub enum TrialError {
 /// rows, as NaN. A record without a heading column has the integral of its yaw rate, and a flag for it.
 ///
 /// ```
-/// use kempf_trial::{Channel, Columns, Origin, Trial};
+/// use kempf_trial::{Channel, Columns, RecordOrigin, Trial};
 ///
 /// let time: Vec<f64> = (0..60).map(f64::from).collect();
 /// let rudder = time.iter().map(|t| if *t < 30.0 { 0.17 } else { -0.17 }).collect();
 /// let heading = time.iter().map(|t| 0.3 * (t / 15.0).sin()).collect();
 /// let channels = [(Channel::Rudder, rudder), (Channel::Heading, heading)].into();
-/// let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
+/// let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
 /// let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() })?;
 /// assert_eq!((trial.len(), trial.duration(), trial.sampling_period()), (60, 59.0, 1.0));
 /// # Ok::<(), kempf_trial::TrialError>(())
@@ -127,15 +127,15 @@ pub enum TrialError {
 #[derive(Debug, Clone)]
 pub struct Trial {
     name: String,
-    origin: Origin,
+    origin: RecordOrigin,
     /// Shared by the records of many trials with one rudder.
     rudder: Arc<RecordedRudder>,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
-    heading_from_yaw_rate: bool,
+    is_heading_integrated: bool,
     noise: Noise,
     particulars: Option<Particulars>,
-    conditions: Conditions,
+    conditions: DeclaredConditions,
     rejected: Vec<RejectedReading>,
 }
 
@@ -159,7 +159,7 @@ impl Trial {
     ///
     /// Fails if the rudder, or both heading and yaw rate, are absent; if columns differ in length; if time does
     /// not increase; or if fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows contain a heading.
-    pub fn new(name: impl Into<String>, origin: Origin, columns: Columns) -> Result<Self, TrialError> {
+    pub fn new(name: impl Into<String>, origin: RecordOrigin, columns: Columns) -> Result<Self, TrialError> {
         let Columns { time, mut channels, unknown } = columns;
         for (&channel, values) in &channels {
             if values.len() != time.len() {
@@ -174,12 +174,12 @@ impl Trial {
     fn from_rudder(
         rudder: Arc<RecordedRudder>,
         name: String,
-        origin: Origin,
+        origin: RecordOrigin,
         mut channels: BTreeMap<Channel, Vec<f64>>,
         unknown: Vec<(String, Vec<f64>)>,
     ) -> Result<Self, TrialError> {
-        let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
-        if heading_from_yaw_rate {
+        let is_heading_integrated = !channels.contains_key(&Channel::Heading);
+        if is_heading_integrated {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
             channels.insert(Channel::Heading, integrate(rudder.rows.times(), rate));
         }
@@ -193,10 +193,10 @@ impl Trial {
             rudder,
             channels,
             unknown,
-            heading_from_yaw_rate,
+            is_heading_integrated,
             noise: Noise::default(),
             particulars: None,
-            conditions: Conditions::default(),
+            conditions: DeclaredConditions::default(),
             rejected: Vec::new(),
         })
     }
@@ -212,7 +212,7 @@ impl Trial {
     }
 
     /// The same record with the declared conditions of the trial (form of MSC/Circ.1053).
-    pub fn with_conditions(self, conditions: Conditions) -> Self {
+    pub fn with_conditions(self, conditions: DeclaredConditions) -> Self {
         Self { conditions, ..self }
     }
 
@@ -232,7 +232,7 @@ impl Trial {
     }
 
     /// Origin of the record.
-    pub fn origin(&self) -> &Origin {
+    pub fn origin(&self) -> &RecordOrigin {
         &self.origin
     }
 
@@ -269,8 +269,8 @@ impl Trial {
     }
 
     /// `true` if the heading is the integral of the yaw rate, because none was recorded.
-    pub fn heading_from_yaw_rate(&self) -> bool {
-        self.heading_from_yaw_rate
+    pub fn is_heading_integrated(&self) -> bool {
+        self.is_heading_integrated
     }
 
     /// Rudder angle of every row, rad.
@@ -338,7 +338,7 @@ impl Trial {
     }
 
     /// Declared conditions of the trial (form of MSC/Circ.1053).
-    pub fn conditions(&self) -> &Conditions {
+    pub fn conditions(&self) -> &DeclaredConditions {
         &self.conditions
     }
 
@@ -396,7 +396,7 @@ mod tests {
             (Channel::Speed, values_of(|_| 1.2)),
             (Channel::North, values_of(|t| 1.2 * t)),
         ];
-        let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
+        let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
         let columns = Columns { time: time.clone(), channels: channels.into(), unknown: Vec::new() };
         let trial = Trial::new("run", origin, columns).expect("a record");
         let (model, ship) = (Particulars { length: 7.0, speed: 1.2 }, Particulars { length: 320.0, speed: 8.0 });

@@ -130,12 +130,12 @@ pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
 mod tests {
     use super::*;
     use crate::channel::Channel;
-    use crate::record::{Columns, Origin};
+    use crate::record::{Columns, RecordOrigin};
 
     fn record(name: &str, scale: Option<(f64, f64)>) -> Trial {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let channels = [(Channel::Rudder, vec![0.1; 20]), (Channel::Heading, time.clone())].into();
-        let origin = Origin::Measured { file: name.into(), sha256: String::new() };
+        let origin = RecordOrigin::Measured { file: name.into(), sha256: String::new() };
         let trial = Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
         match scale {
             Some((length, speed)) => trial.with_particulars(Particulars { length, speed }),

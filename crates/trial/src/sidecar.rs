@@ -13,7 +13,7 @@ use ship::effects::ColumnFormula;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
 
-use crate::conditions::Conditions;
+use crate::conditions::DeclaredConditions;
 use crate::file::{FileKind, read_text};
 use crate::names::{ColumnMeaning, quantity_unit_meaning};
 use crate::record::Noise;
@@ -61,7 +61,7 @@ pub struct Sidecar {
     pub(crate) rudder: RudderKeys,
     pub(crate) noise: Noise,
     /// Declared particulars and conditions for the form of MSC/Circ.1053.
-    pub conditions: Conditions,
+    pub conditions: DeclaredConditions,
 }
 
 impl Sidecar {
@@ -217,7 +217,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, LocatedProblem> {
         toml::from_str(text).map_err(syntax)?;
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let conditions = conditions(text, &document, ship, Conditions { weather, trial, ..form }.without_blanks())?;
+    let conditions = conditions(text, &document, ship, DeclaredConditions { weather, trial, ..form }.without_blanks())?;
     let noise = Noise {
         heading: noise.heading_deg.map(from_deg),
         yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
@@ -238,17 +238,17 @@ fn conditions(
     text: &str,
     document: &DeTable,
     ship: Option<ShipKeys>,
-    form: Conditions,
-) -> Result<Conditions, LocatedProblem> {
+    form: DeclaredConditions,
+) -> Result<DeclaredConditions, LocatedProblem> {
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
     if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
         return Err((span(document, "ship", ""), SidecarProblem::Ship));
     }
-    let has_form = hull.has_hull_dimensions();
+    let has_form = hull.has_more_than_length_and_speed();
     hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
     let particulars = declared.then_some(Particulars { length: hull.length, speed: hull.speed });
-    let mut conditions = Conditions { particulars, ..form };
+    let mut conditions = DeclaredConditions { particulars, ..form };
     if let Some(key) = conditions.join(hull) {
         return Err(unfit(text, document, "form", key, "the value of [ship], or no value"));
     }

@@ -14,7 +14,7 @@ use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 use toml::Spanned;
 
 use crate::cells::Separator;
-use crate::conditions::{Conditions, DeclaredWeather};
+use crate::conditions::{DeclaredConditions, DeclaredWeather};
 use crate::encoding::Encoding;
 use crate::trial_particulars::TrialParticulars;
 
@@ -44,7 +44,7 @@ pub(crate) struct SidecarKeys {
     pub trial: TrialParticulars,
     #[serde(default)]
     #[schemars(description = "The table as it is written.")]
-    pub form: Conditions,
+    pub form: DeclaredConditions,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]

@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
 
-use crate::{Channel, Columns, Origin, Trial};
+use crate::{Channel, Columns, RecordOrigin, Trial};
 
 /// Ship and its zig-zag; angles in radians, starboard first.
 #[derive(Clone, Copy)]
@@ -108,12 +108,12 @@ fn advance(state: State, rudder: f64, slope: f64, time: f64) -> State {
 
 /// A record from its columns.
 pub(crate) fn trial(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
-    let origin = Origin::Simulated { scenario: "first order".into(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: "first order".into(), cell: 0, replicate: 0 };
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into_iter().collect();
     Trial::new("zig-zag", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns are consistent")
 }
 
-/// Normal deviates.
+/// Generator of standard normal deviates.
 pub(crate) struct Gaussian(ChaCha8Rng);
 
 impl Gaussian {

@@ -6,8 +6,8 @@ use toml::Value;
 
 use crate::clock::parse_date;
 
-/// Ship, day and draughts of a trial, as declared in a sidecar under `[trial]`; `None` if undeclared. In
-/// brackets, the kind of value of the sidecar key.
+/// Ship, date and draughts of a trial, as declared in a sidecar under `[trial]`; `None` if undeclared. In brackets, the
+/// kind of value of the sidecar key.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct TrialParticulars {

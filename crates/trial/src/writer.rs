@@ -18,7 +18,7 @@ use crate::record::{Noise, Trial};
 pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
     let channels: Vec<(Channel, f64, &[f64])> = Channel::ALL
         .into_iter()
-        .filter(|&channel| channel != Channel::Heading || !trial.heading_from_yaw_rate())
+        .filter(|&channel| channel != Channel::Heading || !trial.is_heading_integrated())
         .filter_map(|channel| Some((channel, channel.written_unit().si_factor(), trial.channel(channel)?)))
         .collect();
     let mut table = csv::Writer::from_writer(output);
@@ -72,8 +72,8 @@ mod tests {
 
     use super::*;
     use crate::reader::read_from_reader;
-    use crate::record::{Columns, Origin};
-    use crate::{Conditions, DeclaredWeather, Sidecar};
+    use crate::record::{Columns, RecordOrigin};
+    use crate::{DeclaredConditions, DeclaredWeather, Sidecar};
 
     fn trial(without_heading: bool) -> Trial {
         let time: Vec<f64> = (0..200).map(|i| 1000.0 + 0.7 * f64::from(i) + 0.01 * f64::from(i % 3)).collect();
@@ -102,7 +102,7 @@ mod tests {
             channels.remove(&Channel::Heading);
         }
         let unknown = vec![("thrust, \"N\"".to_owned(), time.iter().map(|t| t * 1e-7).collect())];
-        let origin = Origin::Simulated { scenario: "writer".to_owned(), cell: 0, replicate: 0 };
+        let origin = RecordOrigin::Simulated { scenario: "writer".to_owned(), cell: 0, replicate: 0 };
         Trial::new("writer", origin, Columns { time, channels, unknown }).expect("the columns are complete")
     }
 
@@ -116,7 +116,7 @@ mod tests {
                 .expect("a written record is readable");
             let back = back.trial;
             assert_eq!(back.len(), trial.len());
-            assert_eq!(back.heading_from_yaw_rate(), without_heading);
+            assert_eq!(back.is_heading_integrated(), without_heading);
             for (read, expected) in back.time().iter().zip(trial.time()) {
                 assert_eq!(read, expected);
             }
@@ -137,7 +137,7 @@ mod tests {
         let trial = trial(false);
         assert_eq!(sidecar_toml(&trial), None);
         let particulars = Particulars { length: 7.0, speed: 1.18 };
-        let calm = Conditions { weather: Some(DeclaredWeather::Calm), ..Conditions::default() };
+        let calm = DeclaredConditions { weather: Some(DeclaredWeather::Calm), ..DeclaredConditions::default() };
         let text = sidecar_toml(&trial.with_particulars(particulars).with_conditions(calm)).expect("a sidecar");
         let back = Sidecar::parse(&text, Path::new("writer.trial.toml")).expect(&text).conditions;
         assert_eq!((back.particulars, back.weather), (Some(particulars), Some(DeclaredWeather::Calm)));

@@ -13,8 +13,8 @@ pub use crate::benchmark::statistics::ScoreFigure;
 
 /// Leaderboard: all methods on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Board {
+#[serde(deny_unknown_fields, rename = "Board")]
+pub struct Leaderboard {
     /// Task.
     pub task: BenchTask,
     /// Study of the records.
@@ -75,7 +75,7 @@ impl WilsonShare {
 }
 
 /// Leaderboards of all tasks that have a score, one per task and study.
-pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
+pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Leaderboard> {
     let scored = by_task_and_study(cases, |task| task.score().is_some());
     scored.into_iter().map(|((task, field), group)| leaderboard(task, field, &group, methods, reference)).collect()
 }
@@ -120,7 +120,7 @@ impl Scores {
     }
 }
 
-fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
+fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Leaderboard {
     let scores = Scores::from_cases(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {
@@ -149,7 +149,7 @@ fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[St
     };
     let mut standings: Vec<LeaderboardRow> = scores.methods.iter().enumerate().map(row).collect();
     standings.sort_by(|a, b| a.median.order(&b.median).then(a.quantile_90.order(&b.quantile_90)));
-    Board { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
+    Leaderboard { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
 /// Coverage of the intervals of a method, for K and T.
@@ -216,7 +216,7 @@ mod tests {
         let cases: Vec<BenchCase> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
         let methods = ["a", "b", "c"].map(str::to_owned);
         let boards = boards(&cases, &methods, "a");
-        let [Board { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
+        let [Leaderboard { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
         let [b, a] = &standings[..] else { panic!("c was not asked: {standings:?}") };
         assert_eq!((b.method.as_str(), b.failed, b.median.value, b.quantile_90.value), ("b", 4, Some(1.0), None));
         assert_eq!((b.ratio.and_then(|r| r.value), b.share_better.and_then(|b| b.value)), (Some(0.5), Some(0.6)));

@@ -145,7 +145,7 @@ pub struct Skipped {
     pub set: String,
     /// Name of the record.
     pub record: String,
-    /// Reason.
+    /// Reason why the record was not used.
     pub reason: String,
 }
 

@@ -24,7 +24,7 @@ pub struct NamingLine {
     pub named: WilsonShare,
 }
 
-/// Lines of all methods, by set.
+/// Counts of effect names for every method and, within it, every set.
 pub fn lines(cases: &[BenchCase], methods: &[String]) -> Vec<NamingLine> {
     let naming_cases = cases.iter().filter(|case| case.task == BenchTask::Name);
     let sets = grouped(naming_cases, |case| case.set.as_str());

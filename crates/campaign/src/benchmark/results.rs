@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::board::{Board, boards};
+use crate::benchmark::board::{Leaderboard, boards};
 use crate::benchmark::cases::{BenchCase, BenchSet, BenchTask, Skipped};
 use crate::benchmark::naming::{self, NamingLine};
 use crate::benchmark::overall::{OverallRanking, overall};
@@ -30,12 +30,12 @@ pub struct BenchDocument {
     pub methods: Vec<String>,
     /// One-line summary of each method.
     pub summaries: Vec<String>,
-    /// Sets.
+    /// Sets of trials, each with its records.
     pub sets: Vec<BenchSet>,
     /// Absent records, and trials with a failed simulation.
     pub skipped: Vec<Skipped>,
     /// Leaderboards.
-    pub boards: Vec<Board>,
+    pub boards: Vec<Leaderboard>,
     /// Counts of correct and wrong effect names.
     pub naming: Vec<NamingLine>,
     /// Ranking over all predictions.
@@ -108,7 +108,7 @@ impl BenchDocument {
     /// JSON text: indented, with one line per case.
     ///
     /// Fails for a number that JSON cannot represent; stored numbers are finite.
-    pub fn json(&self) -> Result<String, serde_json::Error> {
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let head = serde_json::to_string_pretty(&Self { cases: Vec::new(), ..self.clone() })?;
         let lines: Vec<String> = self.cases.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
         let head = head.strip_suffix("\"cases\": []\n}").unwrap_or(&head);

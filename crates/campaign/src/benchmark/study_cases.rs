@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 use simulate::Manoeuvre;
 use trial::manoeuvre::rounded_deg;
-use trial::{Origin, Side, Trial, ZigZag};
+use trial::{RecordOrigin, Side, Trial, ZigZag};
 
 use crate::benchmark::cases::{BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, Skipped, rounded};
 use crate::engine::is_method_failure;
@@ -62,7 +62,7 @@ impl SteeredRecord {
             (angles, zig_zag.first_side.unwrap_or_else(|| zig_zag.executes[0].side()))
         });
         let sha256 = match trial.origin() {
-            Origin::Measured { sha256, .. } => Some(sha256.clone()),
+            RecordOrigin::Measured { sha256, .. } => Some(sha256.clone()),
             _ => None,
         };
         Self::new(Some(trial.name()), zig_zag, "turn".to_owned(), sha256)
@@ -109,7 +109,7 @@ impl CellTasks {
             records,
             fitted: cell.record_count(),
             is_simulated: cell.record_set().is_none(),
-            has_indices: cell.record_set().is_none() && !cell.is_nearest(),
+            has_indices: cell.record_set().is_none() && !cell.is_compared_with_nearest(),
             missing: is_to_be_named.then(|| missing.into_iter().next()),
         }
     }
@@ -244,7 +244,7 @@ fn named(trace: &TraceRow) -> Vec<Vec<String>> {
 fn indices(row: &StudyRow) -> Option<CaseAnswer> {
     let [k, t, _] = row.errors();
     let errors = [k?, t?].map(|error| rounded(100.0 * error));
-    let [true_k, true_t] = row.truth();
+    let [true_k, true_t] = row.true_indices();
     let contains = |ends: Option<[f64; 2]>, truth: Option<f64>| Some((ends?[0]..=ends?[1]).contains(&truth?));
     let contains_truth = contains(row.k_ci95_per_s, true_k).zip(contains(row.t_ci95_s, true_t)).map(|(k, t)| [k, t]);
     let score = Some(errors[0].abs().max(errors[1].abs()));

@@ -94,7 +94,7 @@ pub const COLUMNS: [RowColumn; 22] = columns! {
 /// Further columns of a study whose ships are a first-order base with effects.
 pub const BASE_COLUMNS: [RowColumn; 2] = columns! {
     "own_K_per_s",
-    "K of the ship's own base, against which a trace is held; null where the ship is first order or a hull"
+    "K of the ship's own base, with which a trace is compared; null where the ship is first order or a hull"
         => number(base_k_per_s);
     "own_T_s", "T of that base" => number(base_t_s);
 };
@@ -104,7 +104,8 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
     "trace_verdict", "clean, disturbed, traced, located or unexplained" => text(verdict, set_verdict);
     "trace_named", "effects named, joined by +; empty where none was" => text(named, set_named);
     "trace_groups", "the same, each with its aliases joined by |" => text(groups, set_groups);
-    "trace_probabilities", "effects with a probability of at least 0.005, each with it behind =, joined by +"
+    "trace_probabilities",
+    "effects with a probability of at least 0.005, each followed by = and its probability, joined by +"
         => text(probabilities, set_probabilities);
     "trace_margin",
     "log evidence for the one missing effect less that for the best other one; null where not one is missing"
@@ -123,7 +124,7 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
 /// Further columns of a study of measured records.
 pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
     "validation_60_s_rmse_deg",
-    "in a study of measured records: rms error of the heading on the record that judges, its replay restarted every 60 s"
+    "in a study of measured records: rms error of the heading on the held-out record, its replay restarted every 60 s"
         => number(validation_windows_deg);
     "trace_sizes",
     "in a study of measured records: parameters of the effects named, joined by + and those of one effect by |: symbol, \
@@ -178,7 +179,7 @@ fn joined<T>(all: &[T], write: impl Fn(&T) -> String) -> Cow<'static, str> {
     all.iter().map(write).collect::<Vec<_>>().join("+").into()
 }
 
-/// List from a text. Fails with a message on `entries` if an entry is invalid.
+/// Entries of a text joined by `+`, each read by `read`. Fails with a message that names `entries` if one is invalid.
 fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Result<Vec<T>, String> {
     let parts = text.split('+').filter(|part| !part.is_empty());
     parts.map(read).collect::<Option<_>>().ok_or_else(|| format!("{text:?} does not list {entries}"))

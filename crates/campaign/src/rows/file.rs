@@ -32,8 +32,10 @@ const MAX_TEXT_BYTES: usize = 4096;
 /// Maximum size of an uncompressed column of a block, bytes.
 const MAX_COLUMN_BYTES: i64 = 1 << 28;
 
-/// Maximum size of an uncompressed page, bytes, and maximum number of values in a page.
+/// Maximum size of an uncompressed page, bytes.
 const MAX_PAGE_BYTES: u64 = 1 << 24;
+
+/// Maximum number of values in a page.
 const MAX_PAGE_VALUES: u64 = 1 << 20;
 
 /// `true` if a page is within the limits of a block.
@@ -57,7 +59,7 @@ pub struct BlockLabel {
 }
 
 impl BlockLabel {
-    /// Block.
+    /// Position of the block: its cell and its number in the cell.
     pub fn block(&self) -> Block {
         Block { cell: self.cell, number: self.block }
     }

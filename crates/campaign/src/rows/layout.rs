@@ -45,7 +45,7 @@ impl RowLayout {
         let is_traced = design.methods.iter().any(|method| method.id == TRACE);
         let groups = [
             (true, COLUMNS.as_slice()),
-            (design.cells.iter().any(|cell| cell.has_own_indices), &BASE_COLUMNS),
+            (design.cells.iter().any(|cell| cell.is_base_with_effects), &BASE_COLUMNS),
             (is_traced, &TRACE_COLUMNS),
             (is_traced && design.cells.iter().any(|cell| cell.physics.is_some()), &LOCATED_COLUMNS),
             (design.is_measured(), &RECORD_COLUMNS),

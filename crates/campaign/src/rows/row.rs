@@ -96,9 +96,10 @@ pub struct TraceRow {
     pub located: Vec<LocatedMoment>,
     /// Probabilities of effects, of at least 0.005.
     pub probabilities: Vec<(Box<str>, f64)>,
-    /// Gain in BIC of the missing effect over the best other effect.
+    /// Log evidence of the missing effect less that of the best other effect; `None` unless exactly one effect is
+    /// missing.
     pub margin: Option<f64>,
-    /// Expected likelihood ratio of the truth against the nearest first-order response.
+    /// Expected 2 ln Λ of the truth against the nearest first-order response.
     pub expected: Option<f64>,
     /// Share of the headings of the trial inside the 95 % band of the traced model.
     pub band_fitted: Option<f64>,
@@ -162,7 +163,7 @@ pub struct StudyRow {
 impl StudyRow {
     /// True K (1/s) and T (s) for this method: of the base for a trace, which models the effects, otherwise of the
     /// nearest first-order response.
-    pub fn truth(&self) -> [Option<f64>; 2] {
+    pub fn true_indices(&self) -> [Option<f64>; 2] {
         match (&self.traced, self.base_k_per_s, self.base_t_s) {
             (Some(_), k @ Some(_), t @ Some(_)) => [k, t],
             _ => [self.true_k_per_s, self.true_t_s],
@@ -171,7 +172,7 @@ impl StudyRow {
 
     /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the slope of the response to the rudder at its beginning.
     pub fn errors(&self) -> [Option<f64>; 3] {
-        let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.truth());
+        let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.true_indices());
         let over = |k: Option<f64>, t: Option<f64>| Some(k? / t?);
         [(k, true_k), (t, true_t), (over(k, t), over(true_k, true_t))]
             .map(|(estimate, truth)| Some(estimate? / truth? - 1.0).filter(|error| error.is_finite()))

@@ -73,7 +73,7 @@ impl DesignCell {
     }
 
     /// `true` if one of its methods is a trace.
-    pub fn traces(&self) -> bool {
+    pub fn is_traced(&self) -> bool {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
     }
 
@@ -124,12 +124,12 @@ impl DesignCell {
     }
 
     /// `true` for a first-order base with effects, not equal to the nearest first-order response in K and T.
-    pub fn has_own_indices(&self) -> bool {
+    pub fn is_base_with_effects(&self) -> bool {
         self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
     }
 
     /// `true` for a simulated ship that is not first order, so that K and T are compared with the nearest response.
-    pub fn is_nearest(&self) -> bool {
+    pub fn is_compared_with_nearest(&self) -> bool {
         self.specification().is_some_and(|spec| spec.truth.is_none())
     }
 
@@ -212,7 +212,7 @@ impl DrawnSettings {
             sweep::set(&mut document, &draw.key, Value::Float(value))?;
         }
         let wire: ScenarioWire = reader::read_document(&document)?;
-        resolve::specification(&wire, &self.name, &self.folder)
+        resolve::trial_specification(&wire, &self.name, &self.folder)
     }
 }
 
@@ -275,7 +275,7 @@ pub(crate) fn simulated_cell(
     };
     let changed = changed(document, points).map_err(attribute)?;
     let wire: ScenarioWire = reader::read_document(&changed).map_err(attribute)?;
-    let specification = resolve::specification(&wire, name, folder).map_err(attribute)?;
+    let specification = resolve::trial_specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
     limits::check_count("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
     let draws: Vec<SampledKey> = wire

@@ -16,7 +16,7 @@ use crate::scenario::identity::{self, hex};
 use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::outside_estimates::OutsideEstimates;
 use crate::scenario::part::ScenarioPart;
-use crate::scenario::predictions::Predictions;
+use crate::scenario::predictions::PredictionSettings;
 use crate::scenario::problem::{KeyFault, KeyPath, text_fault};
 use crate::scenario::prose::{Presentation, Prose, Published};
 use crate::scenario::records::{self, RecordScenarioWire};
@@ -49,7 +49,7 @@ pub struct Scenario {
     /// Stopping rule of the cells.
     pub stop: Option<StopRule>,
     /// Manoeuvres predicted from every estimate.
-    pub predictions: Option<Predictions>,
+    pub predictions: Option<PredictionSettings>,
     /// SHA-256 of the design and of the records it replays; a seed from the command line is not included.
     pub design_sha256: String,
     /// The file as it was read.
@@ -138,7 +138,7 @@ impl Scenario {
         };
         prose.check()?;
         // The document must be valid without sweeps and draws, which change but do not complete it.
-        resolve::specification(&wire, name, folder)?;
+        resolve::trial_specification(&wire, name, folder)?;
         let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
@@ -236,7 +236,7 @@ impl Scenario {
         (!self.cells[0].methods.is_empty()).then_some(self)
     }
 
-    /// Scenario with a method of the caller after its methods, on the same trials.
+    /// Scenario with a method of the caller appended to its own methods, on the same trials.
     ///
     /// Fails for an invalid label, and for one already in use.
     pub fn with_identifier(self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
@@ -273,7 +273,7 @@ impl Scenario {
         if document.contains_key(RECORDS) {
             return self.text.clone();
         }
-        resolved::text(&document, &self.cells[0].methods).expect("it has been resolved")
+        resolved::scenario_toml(&document, &self.cells[0].methods).expect("it has been resolved")
     }
 
     /// Assumptions that can influence the result, most harmful first, each as a sentence without full stop.

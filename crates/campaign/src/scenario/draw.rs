@@ -6,7 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
 use serde::{Deserialize, Serialize};
 use ship::ShortNumber;
-use simulate::{Purpose, StreamKey};
+use simulate::{RngPurpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
 use crate::scenario::limits;
@@ -175,7 +175,7 @@ impl DrawWire {
 impl SampledKey {
     /// Sampled value of the key for the trial of `key`, in the unit of the key.
     pub fn sample(&self, key: &StreamKey) -> f64 {
-        let mut rng = StreamKey { cell: 0, ..*key }.indexed_rng(Purpose::Specification, self.index);
+        let mut rng = StreamKey { cell: 0, ..*key }.indexed_rng(RngPurpose::Specification, self.index);
         let [low, high] = self.between;
         loop {
             let value = self.shape.sample(&mut rng);

@@ -147,7 +147,7 @@ pub fn stated_physics(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, 
 pub fn parse_formula(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault> {
     ship::effects::parse_formula(line).map_err(|error| {
         let advice = "docs/src/howto/own-effect.md says what a formula may hold";
-        KeyFault::within(error.position, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
+        KeyFault::within_text(error.position, key.clone(), format!("`{key}`: {}", error.problem), "here", advice)
     })
 }
 

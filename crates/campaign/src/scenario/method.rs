@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use ::trace::{EffectId, Rule, Selection, empirical};
+use ::trace::{EffectId, Selection, WeightingRule, empirical};
 use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use ship::effects::Formula;
-use simulate::{Purpose, StreamKey};
+use simulate::{RngPurpose, StreamKey};
 use trial::Trial;
 
 use crate::scenario::outside_estimates::{self, OutsideEstimates};
@@ -82,7 +82,7 @@ impl Procedure {
 
 /// First-order estimate from all records of one trial; a randomised method uses the random stream of this trial.
 pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) -> Result<Estimate, IdentifyError> {
-    let seeded = identifier.with_seed(key.rng(Purpose::Method).random());
+    let seeded = identifier.with_seed(key.rng(RngPurpose::Method).random());
     seeded.as_deref().unwrap_or(identifier).identify(trials)
 }
 
@@ -126,7 +126,7 @@ pub(crate) struct StraightOnWire {}
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
     /// Weighting rule of the structures.
-    rule: Rule,
+    rule: WeightingRule,
     /// Minimum probability of a named effect.
     probability: f64,
     /// Effects that may be missing; all if omitted.
@@ -141,8 +141,8 @@ pub(crate) struct TraceWire {
 
 impl Default for TraceWire {
     fn default() -> Self {
-        let ::trace::Settings { probability, monomials, .. } = ::trace::Settings::default();
-        Self { rule: Rule::default(), probability, menu: None, monomials, heading_alone: false, formulas: Vec::new() }
+        let ::trace::Settings { rule, probability, monomials, .. } = ::trace::Settings::default();
+        Self { rule, probability, menu: None, monomials, heading_alone: false, formulas: Vec::new() }
     }
 }
 
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(usual, ::trace::Settings { is_thorough: false, ..::trace::Settings::default() });
         let keys = "rule = \"bic\", menu = [\"wind_moment\"], monomials = 59, probability = 0.9";
         let other = traced(keys).expect("settings in range");
-        assert_eq!((other.rule, other.monomials, other.probability), (Rule::Bic, 59, 0.9));
+        assert_eq!((other.rule, other.monomials, other.probability), (WeightingRule::Bic, 59, 0.9));
         let allowed = ["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.selection.allows(id));
         assert_eq!(allowed, [true, false, false]);
     }

@@ -51,7 +51,7 @@ pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};
 pub use outside_estimates::OutsideEstimates;
 pub use physics::MissingPhysics;
-pub use predictions::Predictions;
+pub use predictions::PredictionSettings;
 
 pub use prose::{Highlight, MarkedValue, Presentation, Prose, Published};
 pub use specification::{HULL, Specification};

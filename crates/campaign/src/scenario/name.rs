@@ -15,7 +15,7 @@ pub const MAX_LABEL_CHARS: usize = 80;
 /// with a prefix and an extension, within the 255 bytes of a file system.
 pub const MAX_NAME_BYTES: usize = 180;
 
-/// Reason why a text cannot be used; displayed as the expected text.
+/// Reason why a text cannot be used; its message says what is expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum InvalidText {
     /// Empty or blank text.

@@ -26,7 +26,7 @@ const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 
 /// Predictions made from every estimate of a study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Predictions {
+pub struct PredictionSettings {
     /// Manoeuvres that are predicted.
     pub manoeuvres: Vec<Manoeuvre>,
     /// Number of ships drawn for every prediction.
@@ -44,8 +44,8 @@ pub(crate) struct RecordPredictWire {
 
 impl RecordPredictWire {
     /// Predictions of the validation records, which give the manoeuvres. Fails for a number of draws outside [`DRAWS`].
-    pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
-        Ok(Predictions { manoeuvres: Vec::new(), draws: checked(self.draws)? })
+    pub(crate) fn resolve(&self) -> Result<PredictionSettings, KeyFault> {
+        Ok(PredictionSettings { manoeuvres: Vec::new(), draws: checked(self.draws)? })
     }
 }
 
@@ -58,7 +58,7 @@ fn checked(draws: u64) -> Result<usize, KeyFault> {
 
 impl PredictWire {
     /// Checks every value; fails with the first invalid one.
-    pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
+    pub(crate) fn resolve(&self) -> Result<PredictionSettings, KeyFault> {
         let key = KeyPath::from_dotted("predict");
         let draws = checked(self.draws)?;
         if self.manoeuvres.is_empty() {
@@ -80,7 +80,7 @@ impl PredictWire {
             }
             kinds.push(kind);
         }
-        Ok(Predictions { manoeuvres: kinds, draws })
+        Ok(PredictionSettings { manoeuvres: kinds, draws })
     }
 }
 

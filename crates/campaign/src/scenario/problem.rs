@@ -54,7 +54,7 @@ impl fmt::Display for KeyPath {
 pub enum FaultMark {
     /// Name of the key.
     Name,
-    /// Value.
+    /// Value of the key.
     Value,
     /// Text value, after so many characters.
     Within(usize),
@@ -87,7 +87,7 @@ impl KeyFault {
     }
 
     /// Fault within a text value, after `at` characters.
-    pub fn within(
+    pub fn within_text(
         at: usize,
         key: KeyPath,
         problem: impl Into<String>,

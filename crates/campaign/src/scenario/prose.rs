@@ -85,7 +85,7 @@ impl Highlight {
 pub struct MarkedValue {
     /// Name of the axis.
     pub axis: String,
-    /// Value.
+    /// Position on the axis, in its unit.
     #[serde(rename = "at")]
     pub value: f64,
     /// Name of the value.

@@ -14,7 +14,7 @@ use toml::Table;
 use trial::file;
 use trial::reader::RECORD_FILE;
 use trial::sidecar::SIDECAR_FILE;
-use trial::{Origin, Sidecar, Trial};
+use trial::{RecordOrigin, Sidecar, Trial};
 
 use crate::disk;
 use crate::scenario::identity;
@@ -182,7 +182,7 @@ impl RecordSet {
                 KeyFault::value(key.child("files"), problem, "expected a record that can be read", advice)
             };
             let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
-            if let Origin::Measured { sha256, .. } = read.trial.origin() {
+            if let RecordOrigin::Measured { sha256, .. } = read.trial.origin() {
                 digest.update(sha256);
             }
             if let Some(sidecar) = sidecar {

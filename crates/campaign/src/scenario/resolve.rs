@@ -15,7 +15,7 @@ use crate::scenario::wire::{FurtherWire, ScenarioWire};
 use crate::scenario::{effect, ship};
 
 /// Specification of a trial, with the name of the scenario.
-pub fn specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
+pub fn trial_specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
         scenario_name: name.to_owned(),

@@ -12,7 +12,7 @@ use crate::scenario::{effect, reader, ship};
 /// Resolved text of a scenario, as TOML. Sweeps and draws are kept as written.
 ///
 /// Fails as the scenario would.
-pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
+pub fn scenario_toml(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::read_document(document)?;
     effect::fill_defaults(&mut wire.effect);
     ship::fill_defaults(&mut wire.ship);

@@ -17,7 +17,7 @@ const ZERO: f64 = 1e-12;
 /// Maximum extent of a density beyond the quartiles, in quartile distances.
 const TAILS: f64 = 3.0;
 
-/// Sample that accumulates values.
+/// Sample of finite values: exact up to `MAX_EXACT_VALUES`, then counts in bins of relative accuracy `ACCURACY`.
 #[derive(Debug, Clone, Default)]
 pub struct ErrorSample {
     exact: Vec<f64>,

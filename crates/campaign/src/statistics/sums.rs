@@ -109,7 +109,7 @@ impl PairSums {
     }
 
     /// Number of trials with both errors.
-    pub fn trials(&self) -> u64 {
+    pub fn trial_count(&self) -> u64 {
         self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
     }
 

@@ -4,7 +4,7 @@ use super::tracing::TraceSummary;
 use crate::design::Design;
 use crate::statistics::{DetectionCount, Statistic, detection_size, grouped};
 
-/// Minimum share of the trials that name the effect.
+/// Share of the trials that name an effect at the size from which it is found.
 pub const MIN_NAMED_SHARE: f64 = 0.9;
 
 /// Blind spot: the minimum size at which a trace names an effect, under one set of conditions.

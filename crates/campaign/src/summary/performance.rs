@@ -94,9 +94,9 @@ pub struct Comparison {
     pub closer: Option<Statistic>,
 }
 
-/// Comparison of one method with the reference in one cell.
+/// Comparison of one method with the reference method in one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PairSummary {
+pub struct ReferenceComparison {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
@@ -115,7 +115,7 @@ pub struct Summary {
     /// Summaries per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
     /// Comparisons per cell and method other than the reference.
-    pub pairs: Vec<PairSummary>,
+    pub pairs: Vec<ReferenceComparison>,
     /// Index of the reference method.
     pub reference: usize,
     /// Performance per method, over all cells.

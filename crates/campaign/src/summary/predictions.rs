@@ -68,7 +68,7 @@ impl ConformalScaling {
             lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
         };
         let place = (0..INTERVAL_SCALES.len()).find(|place| coverage(calibration, *place) >= NOMINAL)?;
-        let relative = |line: &&PredictionSummary, place: usize| line.relative(line.mean_score(place));
+        let relative = |line: &&PredictionSummary, place: usize| line.relative_to_truth(line.mean_score(place));
         let score = |place| median(&mut predictions.iter().map(|line| relative(line, place)).collect::<Vec<_>>());
         Some(Self {
             factor: INTERVAL_SCALES[place],
@@ -134,7 +134,7 @@ impl PredictionSummary {
         self.mean(2)
     }
 
-    /// Mean true value.
+    /// Mean true value, in the unit of the characteristic.
     pub fn truth(&self) -> f64 {
         self.mean(3)
     }
@@ -144,8 +144,8 @@ impl PredictionSummary {
         self.mean_score(UNSCALED)
     }
 
-    /// Value of the unit of the characteristic, relative to the mean true value.
-    pub fn relative(&self, value: f64) -> f64 {
+    /// `value`, in the unit of the characteristic, over the absolute mean true value.
+    pub fn relative_to_truth(&self, value: f64) -> f64 {
         value / self.truth().abs()
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::detail::{CellDetail, Cloud, ErrorDensity, MAX_PAIRS, MethodDetail};
-use super::performance::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
+use super::performance::{Comparison, IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
 use super::predictions::{PredictionSummary, add_predictions};
 use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
@@ -153,7 +153,7 @@ impl ClosedCell {
         let compared_methods = methods.clone().filter(|(method, _)| *method != reference);
         let compared = compared_methods.map(|(method, running)| {
             let [k, t] = running.pairs.each_ref().map(|pair| comparison(pair, &resamples));
-            PairSummary { cell, method, trials: running.pairs[0].trials(), k, t }
+            ReferenceComparison { cell, method, trials: running.pairs[0].trial_count(), k, t }
         });
         let detail = || CellDetail { cell, methods: present.par_iter().map(MethodTally::detail).collect() };
         Summary {
@@ -176,7 +176,7 @@ fn most_batches(methods: &[MethodTally]) -> usize {
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
         resamples.bootstrap(pair.batches(), |total| [PairSums::rms_difference(total), PairSums::rms_ratio(total)]);
-    Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trials()) }
+    Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trial_count()) }
 }
 
 /// Running sums of one method.
@@ -210,7 +210,7 @@ impl MethodTally {
         if let Some(reason) = row.failure.as_deref() {
             self.failed(reason);
         }
-        let [k, t] = row.truth();
+        let [k, t] = row.true_indices();
         let truths = [k, t, k.zip(t).map(|(k, t)| k / t)];
         let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
         let answers = [row.k_per_s, row.t_s, None];
@@ -278,7 +278,7 @@ impl MethodTally {
     }
 }
 
-/// Running sums of the errors of one index.
+/// Running sums of the estimates of K or of T: their errors, bounds and quoted intervals.
 #[derive(Debug, Clone, Default)]
 struct IndexSums {
     sample: ErrorSample,

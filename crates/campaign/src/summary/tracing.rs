@@ -53,7 +53,8 @@ pub struct TraceSummary {
     /// Number of trials with a clear margin for the one missing effect, and number of those that name it.
     #[serde(rename = "clear")]
     pub clearly_separable: [u64; 2],
-    /// Mean expected likelihood ratio.
+    /// Mean over the trials of the expected 2 ln Λ (twice the log-likelihood ratio) of the truth against the nearest
+    /// first-order response.
     pub expected: Option<f64>,
     /// Mean coverage of the heading band: on the trial, and on the validation manoeuvre.
     pub band: [Option<f64>; 2],
@@ -132,7 +133,8 @@ impl TraceSummary {
 pub(super) struct TraceTally {
     summary: TraceSummary,
     physics: Option<MissingPhysics>,
-    /// Running means of the expected likelihood ratio and of the coverage of the two bands.
+    /// Running means of the expected 2 ln Λ of the truth against the nearest first-order response, and of the coverage
+    /// of the two bands.
     means: [RunningMean; 3],
 }
 

@@ -156,7 +156,7 @@ pub struct RecordEntry {
     pub length_m: Option<f64>,
     /// Approach speed of the ship, if known, m/s.
     pub speed_m_s: Option<f64>,
-    /// Ship, day and draughts, if declared.
+    /// Ship, date and draughts, if declared.
     #[serde(default, skip_serializing_if = "TrialParticularsEntry::is_empty")]
     pub trial_particulars: TrialParticularsEntry,
 }

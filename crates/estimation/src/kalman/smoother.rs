@@ -2,7 +2,7 @@
 //!
 //! Source: Bryson and Frazier (1963), whose smoother inverts no matrix.
 
-use super::{Filter, GAIN_TOLERANCE, Reading, Sensor, System, congruence, identity};
+use super::{Filter, GAIN_TOLERANCE, Reading, StateSensor, System, congruence, identity};
 
 /// Smoother of a system: the filter with the predicted covariance of every gain.
 #[derive(Debug, Clone)]
@@ -33,7 +33,7 @@ impl<const N: usize> Smoother<N> {
                 x = std::array::from_fn(|i| (0..N).map(|j| f[i][j] * x[j]).sum::<f64>() + added[i]);
             }
             let predicted = x;
-            let Sensor { state, second_state, .. } = self.filter.system.sensors[sensor];
+            let StateSensor { state, second_state, .. } = self.filter.system.sensors[sensor];
             let innovation =
                 column[row] - predicted[state] - second_state.map_or(0.0, |second_state| predicted[second_state]);
             let gain = &self.filter.gains[self.filter.gain_of[row] as usize].gain;
@@ -59,7 +59,7 @@ impl<const N: usize> Smoother<N> {
             let (step, sensor) = (reading.step(), reading.sensor());
             // Backwards through the correction by the reading.
             let through = *innovation / gain.variance - (0..N).map(|i| gain.gain[i] * score[i]).sum::<f64>();
-            let Sensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
+            let StateSensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
             [Some(first), second_state].into_iter().flatten().for_each(|index| score[index] += through);
             let predicted = &self.predicted[index];
             *state = std::array::from_fn(|i| state[i] + (0..N).map(|j| predicted[i][j] * score[j]).sum::<f64>());
@@ -79,7 +79,7 @@ impl<const N: usize> Smoother<N> {
             let index = self.filter.gain_of[row] as usize;
             let (gain, reading) = (&self.filter.gains[index], self.filter.system.readings[row]);
             let (step, sensor) = (reading.step(), reading.sensor());
-            let Sensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
+            let StateSensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
             let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == second_state));
             let unit = identity::<N>();
             // Transposed, since N = Aᵀ N A.

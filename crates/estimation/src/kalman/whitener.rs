@@ -3,7 +3,7 @@
 //! The recursion within a column is serial: a row waits for the row before it. Columns are independent, and so are
 //! filters, so several columns and two filters advance side by side.
 
-use super::{Filter, Gain, MAX_STATES, Reading, Sensor, Step, System};
+use super::{Filter, Gain, MAX_STATES, Reading, StateSensor, Step, System};
 use crate::lanes::{Kernel, run};
 use crate::with_states;
 
@@ -14,7 +14,7 @@ pub struct Whitener {
     /// `true` if every transition matrix is upper triangular: no state acts on a later state.
     is_upper: bool,
     transitions: Vec<[[f64; MAX_STATES]; MAX_STATES]>,
-    sensors: Vec<Sensor>,
+    sensors: Vec<StateSensor>,
     gains: Vec<WhiteningGain>,
     readings: Vec<Reading>,
     /// Index of the gain of every reading.
@@ -127,7 +127,7 @@ impl Whitener {
         for ((value, &reading), &gain) in column.iter_mut().zip(&self.readings).zip(&self.gain_of).rev() {
             let WhiteningGain { gain, weight, .. } = &self.gains[gain as usize];
             *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
-            let Sensor { state, second_state, .. } = self.sensors[reading.sensor()];
+            let StateSensor { state, second_state, .. } = self.sensors[reading.sensor()];
             [Some(state), second_state].into_iter().flatten().for_each(|state| later[state] -= *value);
             if let Some(step) = reading.step() {
                 let f = &self.transitions[step];
@@ -164,8 +164,10 @@ impl Whitener {
     }
 }
 
-/// Number of columns that are whitened side by side, and number of rows that are copied at a time for them.
+/// Number of columns that are whitened side by side.
 pub const COLUMNS: usize = 8;
+
+/// Number of rows that are copied at a time for the columns that are whitened side by side.
 const ROWS: usize = 64;
 
 /// One reading of every one of [`COLUMNS`] columns.
@@ -255,8 +257,8 @@ mod tests {
         let transition = [[1.0, 0.9, 0.4], [back, damping, 0.9], [0.0, 0.0, 0.97]];
         let process_noise = [[1e-4, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 0.02]];
         let sensors = vec![
-            Sensor { state: 0, second_state: None, variance: 0.5 },
-            Sensor { state: 1, second_state: None, variance: 0.2 },
+            StateSensor { state: 0, second_state: None, variance: 0.5 },
+            StateSensor { state: 1, second_state: None, variance: 0.2 },
         ];
         let readings = (0..COUNT).map(|row| Reading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
         let initial = [[0.3, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.4]];

@@ -139,7 +139,7 @@ fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<
 /// Half period of the zig-zag, s: the mean time between departures from the base course after the first; the duration
 /// of the record if there are fewer than three.
 fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
-    let departures = points::departures(time, off_course);
+    let departures = points::departure_times(time, off_course);
     match departures[..] {
         // A record that starts in a swing departs before its first row.
         [_, first, .., last] => (last - first) / (departures.len() - 2) as f64,

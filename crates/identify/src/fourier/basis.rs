@@ -326,11 +326,11 @@ mod tests {
         assert_relative_eq!(curve.sine[1], -1.5, max_relative = 1e-10);
         assert_abs_diff_eq!(curve.sine[2], 0.0, epsilon = 1e-10);
         for t in [0.0, 17.0, 200.0] {
-            assert_relative_eq!(curve.heading(t), signal(t), max_relative = 1e-10);
+            assert_relative_eq!(curve.heading_at(t), signal(t), max_relative = 1e-10);
             let rate = -0.1 * (0.05 * t).sin() - 0.15 * (0.1 * t).cos();
-            assert_abs_diff_eq!(curve.yaw_rate(t), rate, epsilon = 1e-11);
+            assert_abs_diff_eq!(curve.yaw_rate_at(t), rate, epsilon = 1e-11);
             let acceleration = -0.005 * (0.05 * t).cos() + 0.015 * (0.1 * t).sin();
-            assert_abs_diff_eq!(curve.yaw_acceleration(t), acceleration, epsilon = 1e-12);
+            assert_abs_diff_eq!(curve.yaw_acceleration_at(t), acceleration, epsilon = 1e-12);
         }
     }
 
@@ -363,9 +363,9 @@ mod tests {
             let accelerations = basis.values(&basis.derivative(&rate));
             for (i, t) in time.iter().enumerate() {
                 assert_abs_diff_eq!(fitted[i] + projection.residual[i], values[i], epsilon = 1e-13);
-                assert_abs_diff_eq!(fitted[i], curve.heading(*t), epsilon = 1e-12);
-                assert_abs_diff_eq!(rates[i], curve.yaw_rate(*t), epsilon = 1e-12);
-                assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration(*t), epsilon = 1e-13);
+                assert_abs_diff_eq!(fitted[i], curve.heading_at(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(rates[i], curve.yaw_rate_at(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration_at(*t), epsilon = 1e-13);
             }
             let by_coefficients = basis.derivative_moments(&basis.moments(&values));
             let sum: f64 = rates.iter().zip(&values).map(|(r, y)| r * y).sum();

@@ -19,17 +19,17 @@ pub struct FourierSeries {
 
 impl FourierSeries {
     /// Heading ψ(t), rad.
-    pub fn heading(&self, t: f64) -> f64 {
+    pub fn heading_at(&self, t: f64) -> f64 {
         self.mean + self.sum(t, |_, c, s, a, b| a * c + b * s)
     }
 
     /// Yaw rate ψ'(t), rad/s.
-    pub fn yaw_rate(&self, t: f64) -> f64 {
+    pub fn yaw_rate_at(&self, t: f64) -> f64 {
         self.sum(t, |rate, c, s, a, b| rate * (b * c - a * s))
     }
 
     /// Yaw acceleration ψ''(t), rad/s².
-    pub fn yaw_acceleration(&self, t: f64) -> f64 {
+    pub fn yaw_acceleration_at(&self, t: f64) -> f64 {
         self.sum(t, |rate, c, s, a, b| -rate * rate * (a * c + b * s))
     }
 

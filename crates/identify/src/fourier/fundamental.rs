@@ -52,9 +52,11 @@ const MAX_OVER_PEAK: f64 = 1.5;
 /// Minimum ratio of the highest harmonic to the peak of the transform; below it the series cannot follow the record.
 const MIN_REACH: f64 = 1.25;
 
-/// Scan step as a share of π/(N T_rec), the change of w that moves the highest harmonic by half a period over the
+/// Step of a scan as a share of π/(N T_rec), the change of w that moves the highest harmonic by half a period over the
 /// record.
 const SCAN_STEP: f64 = 0.3;
+
+/// Step of a descent from a start, as the same share.
 const DESCENT_STEP: f64 = 0.15;
 
 impl Fundamental {

@@ -1,8 +1,6 @@
 //! Least squares for K, T and δ_r on T r' + r = K (δ + δ_r), with r and r' of Fourier curves, and their covariance
 //! under white heading noise. It does not fit the curves. Source of the equation: Ge, Hu, Yin and Sun, equation (10).
 
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
-
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector, Matrix3, RowVector3, Vector3};
@@ -36,8 +34,10 @@ pub struct Equations {
     trials: Vec<Block>,
 }
 
-/// Indices of the rudder and of the constant 1 among the signals of [`Block::moments`].
+/// Index of the rudder among the signals of [`Block::moments`].
 const RUDDER: usize = 2;
+
+/// Index of the constant 1 among the signals of [`Block::moments`].
 const ONE: usize = 3;
 
 /// Sensitivity of the equations of one trial to noise on its heading.
@@ -124,7 +124,7 @@ impl Equations {
         };
         // The condition also refuses NaN.
         if !(b > 0.0 && a.is_finite() && b.is_finite()) {
-            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+            return Err(IdentifyError::NotAShip { inverse_T: a, K_over_T: b });
         }
         let bias = RowVector3::new(0.0, -s / (q * q), 1.0 / q);
         let jacobian = Matrix3::from_rows(&[to_response[0], to_response[1], bias]);

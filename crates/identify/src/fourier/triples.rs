@@ -4,7 +4,6 @@
 //! The determinant of the three equations is the area of the triangle that the instants make in the plane of rudder and
 //! r': zero for three instants with one rudder angle, small for a thin triangle, and then the error of r' dominates the
 //! estimate. This module samples triples and solves them; the method combines the estimates.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};

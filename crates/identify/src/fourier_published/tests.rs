@@ -16,8 +16,8 @@ fn robust() -> Settings {
     Settings { triples: 200, aggregation: Aggregation::Median, fundamental: Fundamental::Global, ..Settings::default() }
 }
 
-/// Uniform triples of 10/20 without noise: 14 % give a negative index and 6 % lie within 10 % of both (independent
-/// computation; 2000 draws here, so within 4 percentage points).
+/// Triples drawn uniformly from a noise-free 10/20: 14 % give a negative K or T, and 6 % give both K and T within 10 %
+/// of the truth (independent computation; 2000 draws here, so within 4 percentage points).
 #[test]
 fn uniform_triples_are_useless() {
     let case = ten_twenty();

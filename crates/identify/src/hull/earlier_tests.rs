@@ -11,7 +11,7 @@ use trial::{Channel, Columns, Trial};
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
 use super::track::HullTrack;
-use super::{EarlierHull, HullEstimate, HullFormPrior, combined, fit};
+use super::{EarlierHull, HullEstimate, HullFormPrior, fit, merge_with_earlier};
 
 const SHIP: HullParticulars = HullParticulars {
     length: LENGTH,
@@ -69,7 +69,7 @@ fn what_trials_told_is_widened_and_what_was_expected_counts_once() {
 #[test]
 fn a_hull_is_weighed_together_with_earlier_trials() {
     let own = earlier(SHIP, "quadratic");
-    let (after, check) = combined(&own, std::slice::from_ref(&own)).expect("of its form");
+    let (after, check) = merge_with_earlier(&own, std::slice::from_ref(&own)).expect("of its form");
     let nv = own.form.coefficients().iter().position(|one| one.key == "Nv").expect("known");
     let before = own.form.coefficients()[nv];
     let found = [(after.values[nv] - before.mean) / before.sd, after.covariance[(nv, nv)].sqrt() / before.sd];
@@ -80,9 +80,9 @@ fn a_hull_is_weighed_together_with_earlier_trials() {
         values: own.form.coefficients().iter().map(|one| one.mean - one.sd).collect::<Vec<_>>().into(),
         ..own.clone()
     };
-    let (_, check) = combined(&own, &[apart]).expect("of its form");
+    let (_, check) = merge_with_earlier(&own, &[apart]).expect("of its form");
     assert!(check.expect("both tell something").is_conflict(), "ten deviations to either side");
-    assert!(combined(&own, &[earlier(SHIP, "cubic")]).is_none());
+    assert!(merge_with_earlier(&own, &[earlier(SHIP, "cubic")]).is_none());
 }
 
 #[test]

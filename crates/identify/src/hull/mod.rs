@@ -45,12 +45,12 @@ use trial::Trial;
 pub use conflict::PriorCheck;
 pub use error::HullFitError;
 pub use form_prior::{EarlierHull, HullFormPrior, differs_in_froude_number};
-pub use moment::FormMoment;
+pub use moment::MisfitMoment;
 pub use objective::ResidualDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
-pub use weighed::combined;
+pub use weighed::merge_with_earlier;
 
 /// Rules of the Levenberg-Marquardt search.
 const RULES: SearchSettings = SearchSettings {
@@ -96,7 +96,7 @@ pub struct HullEstimate {
     /// Residuals of the records.
     pub records: Vec<HullResidual>,
     /// Model error of the form, as a random yaw moment.
-    pub moment: FormMoment,
+    pub moment: MisfitMoment,
 }
 
 /// Fits a hull to records of one ship, with a prior of the coefficients.
@@ -125,14 +125,14 @@ pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, Hull
         name: trial.name().to_owned(),
         whole: misfit.whole.sqrt(),
         window: misfit.window.sqrt(),
-        initial_yaw_rate: misfit.initial_yaw_rate / reference.time(),
+        initial_yaw_rate: misfit.initial_yaw_rate / reference.ship_length_time(),
     };
-    let moment = FormMoment::from_misfits(
+    let moment = MisfitMoment::from_misfits(
         &form.with_coefficients(search.estimate.as_slice()).ok_or(HullFitError::NoReplay)?,
         &tracks,
         &misfits,
     );
-    let moment = FormMoment { correlation_time: moment.correlation_time * reference.time(), ..moment };
+    let moment = MisfitMoment { correlation_time: moment.correlation_time * reference.ship_length_time(), ..moment };
     let records = trials.iter().zip(misfits).map(residual).collect();
     let prior = prior.clone();
     Ok(HullEstimate { prior, reference, values: search.estimate, covariance, records, moment })

@@ -13,24 +13,28 @@ use super::track::HullTrack;
 /// Correlation time, in L/U₀: the error of a form changes with the manoeuvre and not with a gust.
 const CORRELATION_TIME_LENGTHS: f64 = 2.0;
 
-/// Deviation of the first trial moments, rad, and the number of rescalings: a hull is nearly linear in them.
+/// Standard deviation of the first trial moments, as a rudder angle, rad.
 const FIRST_DEVIATION_RAD: f64 = 5e-3;
+
+/// Number of rescalings of the trial moments: the departure of a hull is nearly linear in them.
 const SCALINGS: usize = 2;
 
-/// Number of draws per record, and their first seed.
+/// Number of trial moments drawn per record.
 const DRAWS: u64 = 6;
+
+/// Seed of the first draw.
 const SEED: u64 = 2_210_105;
 
 /// Random yaw moment that a hull form leaves unexplained: an Ornstein–Uhlenbeck process.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FormMoment {
+pub struct MisfitMoment {
     /// Standard deviation as the rudder angle of equal moment at approach speed, rad.
     pub deviation: f64,
     /// Time in which its autocorrelation falls to 1/e, s.
     pub correlation_time: f64,
 }
 
-impl FormMoment {
+impl MisfitMoment {
     /// Random moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
     /// L/U₀ by the residuals of the records, `misfits`.
     pub(super) fn from_misfits(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {

@@ -15,8 +15,10 @@ use super::turn::HardTurn;
 /// Number of derivatives: the coefficients of the largest form, the yaw rate at the start, and one spare.
 const DIRECTIONS: usize = 26;
 
-/// Number of steps of the search for a yaw rate at the start, and of step lengths of the line search.
+/// Maximum number of steps of the search for the initial yaw rate of a window.
 const STEPS: usize = 3;
+
+/// Shares of a step of that search that are tried in turn.
 const STEP_SHARES: [f64; 4] = [1.0, 0.4, 0.16, 0.06];
 
 /// Minimum relative gain of a step; below it that search ends.
@@ -207,7 +209,7 @@ impl<'a> HullObjective<'a> {
         track.duration() / self.tracks.len() as f64
     }
 
-    /// Gradient Λ (μ − θ) and value (θ − μ)ᵀ Λ (θ − μ) of the prior.
+    /// Value (θ − μ)ᵀ Λ (θ − μ) of the prior, preceded by Λ (μ − θ), half its negative gradient.
     fn prior_terms(&self, at: &[f64]) -> (DVector<f64>, f64) {
         let departure = self.prior.mean() - DVector::from_column_slice(at);
         let pull = &self.prior.precision * &departure;

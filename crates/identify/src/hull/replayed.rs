@@ -37,7 +37,7 @@ pub(super) fn replay_rows<R: Real>(
                 let share = piece as f64 / pieces;
                 let rudder = R::from(between(&track.rudder, share));
                 let wind = track.wind.as_ref().map_or([0.0; 3], |xyz| xyz.each_ref().map(|axis| between(axis, share)));
-                hull.accelerations(state, rudder, between(&track.turning, share), between(&track.moment, share), wind)
+                hull.accelerations(state, rudder, between(&track.n_ratio, share), between(&track.moment, share), wind)
             };
             let first = rates(state, piece);
             let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);

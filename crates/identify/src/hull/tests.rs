@@ -11,11 +11,11 @@ use ship::vessel::prime::HullForm;
 use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
 use ship::{Dynamics, Input, MeasuredChannels, Motion, Particulars};
-use trial::{Channel, Columns, Origin, Trial, relative_wind};
+use trial::{Channel, Columns, RecordOrigin, Trial, relative_wind};
 
 use super::objective::HullObjective;
 use super::track::HullTrack;
-use super::{FormMoment, HullEstimate, HullFitError, HullFormPrior, HullReference, fit, fit_all, supported_hulls};
+use super::{HullEstimate, HullFitError, HullFormPrior, HullReference, MisfitMoment, fit, fit_all, supported_hulls};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -63,7 +63,7 @@ pub(super) fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: imp
             order = -order;
         }
     }
-    let origin = Origin::Measured { file: "made up".into(), sha256: String::new() };
+    let origin = RecordOrigin::Measured { file: "made up".into(), sha256: String::new() };
     let ship = Particulars { length: LENGTH, speed: SPEED };
     Trial::new(format!("{angle}/{change}"), origin, columns).expect("a record").with_particulars(ship)
 }
@@ -198,7 +198,7 @@ fn a_random_moment_is_found_again() {
         let fresh: f64 = random.sample(StandardNormal);
         moment.push(kept * moment[moment.len() - 1] + (1.0 - kept * kept).sqrt() * deviation * fresh);
     }
-    let FormMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
+    let MisfitMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
     assert!((found / deviation - 1.0).abs() < 0.34, "{}°", to_deg(found));
     assert!((correlation_time * SPEED / LENGTH - 2.0).abs() < 1e-12, "{correlation_time}");
 }

@@ -41,7 +41,7 @@ impl HullReference {
     }
 
     /// Ship-length time L/U₀, s.
-    pub fn time(&self) -> f64 {
+    pub fn ship_length_time(&self) -> f64 {
         self.length / self.speed
     }
 }
@@ -57,7 +57,7 @@ pub(super) struct HullTrack {
     /// Rudder angle, rad.
     pub rudder: Vec<f64>,
     /// Propeller rate relative to the approach.
-    pub turning: Vec<f64>,
+    pub n_ratio: Vec<f64>,
     /// Yaw moment as rudder angle, rad: zero for a record.
     pub moment: Vec<f64>,
     /// Accelerations of the relative wind over Y_w, if it was recorded: surge, sway and yaw.
@@ -76,7 +76,7 @@ impl HullTrack {
     /// Track of a record. Fails for a record with too few headings, a clock that does not fit this length and speed, or
     /// a start near rest.
     pub fn from_trial(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
-        let second = reference.time();
+        let second = reference.ship_length_time();
         let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
         if row > MAX_INTERVAL_LENGTHS || whole > MAX_DURATION_LENGTHS {
             return Err(HullFitError::Clock { trial: trial.name().to_owned(), row, whole });
@@ -94,11 +94,11 @@ impl HullTrack {
 
     /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
     /// headings.
-    pub fn from_rudder(rudder: f64, duration: f64) -> Self {
+    pub fn from_held_rudder(rudder: f64, duration: f64) -> Self {
         Self {
             heading: vec![f64::NAN; 2],
             rudder: vec![rudder; 2],
-            turning: vec![1.0; 2],
+            n_ratio: vec![1.0; 2],
             moment: vec![0.0; 2],
             wind: None,
             cuts: vec![0, 2],
@@ -137,7 +137,7 @@ impl HullTrack {
         });
         let drift = sway.as_ref().map_or(0.0, |sway| sway[0]);
         let surge = speed.as_ref().map_or(1.0, |speed| (speed[0] * speed[0] - drift * drift).max(0.0).sqrt());
-        let turning = approach_rate.and_then(|reference| channel(Channel::PropellerRate, reference));
+        let n_ratio = approach_rate.and_then(|reference| channel(Channel::PropellerRate, reference));
         let wind = trial.relative_wind().and_then(|[speed, from]| {
             let blown: Vec<[f64; 3]> =
                 speed.iter().zip(&from).map(|(wind, from)| wind_accelerations(wind / speed_unit, *from)).collect();
@@ -149,7 +149,7 @@ impl HullTrack {
         (rows.len() >= MIN_HEADINGS).then(|| Self {
             heading: take(trial.heading()),
             rudder: take(trial.rudder()),
-            turning: turning.unwrap_or_else(|| vec![1.0; count]),
+            n_ratio: n_ratio.unwrap_or_else(|| vec![1.0; count]),
             moment: vec![0.0; count],
             wind,
             cuts: cuts(&time),

@@ -8,8 +8,10 @@ use ship::vessel::prime::PrimeHull;
 use super::replayed::replay_rows;
 use super::track::HullTrack;
 
-/// Rudder, rad, and the time for which it is held, in L/U₀: two circles, after which a turn is steady or diverges.
+/// Rudder angle of the turn, rad.
 const RUDDER_RAD: f64 = 35.0 * DEGREE;
+
+/// Time for which the rudder is held, in L/U₀: two circles, after which a turn is steady or diverges.
 const DURATION_LENGTHS: f64 = 24.0;
 
 /// Mean and standard deviation of r L/U in the turn.
@@ -31,7 +33,7 @@ pub(super) struct HardTurn([HullTrack; 2]);
 
 impl HardTurn {
     pub fn new() -> Self {
-        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::from_rudder(rudder, DURATION_LENGTHS)))
+        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::from_held_rudder(rudder, DURATION_LENGTHS)))
     }
 
     /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.

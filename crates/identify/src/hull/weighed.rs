@@ -11,7 +11,7 @@ use super::form_prior::{EarlierHull, HullFormPrior};
 ///
 /// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated
 /// as normal laws: if they are far apart, a fit with the earlier trials as prior is better.
-pub fn combined(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
+pub fn merge_with_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();
     let mut coefficients = fitted.form.coefficients().to_vec();
     for (place, coefficient) in coefficients.iter_mut().enumerate() {

@@ -63,10 +63,10 @@ impl<'a> IntegratedStretch<'a> {
 /// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope at a row is the slope of the chord between
 /// its neighbours.
 ///
-/// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24. On
-/// unequal steps a parabola through three rows would give a smoother slope, but it depends mainly on the shorter
-/// interval: if two rows nearly coincide, the noise of their slope would be integrated over the long interval. `time`
-/// and `value` have the same length, at least 3.
+/// The trapezoid rule would make T too small by the share (h/T)²/12; with equal steps this is the rule of weights
+/// (−1, 13, 13, −1)/24. On unequal steps a parabola through three rows would give a smoother slope, but it depends
+/// mainly on the shorter interval: if two rows nearly coincide, the noise of their slope would be integrated over the
+/// long interval. `time` and `value` have the same length, at least 3.
 pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let chord = |from: usize, to: usize| (value[to] - value[from]) / (time[to] - time[from]);

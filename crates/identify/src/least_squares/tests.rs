@@ -26,7 +26,7 @@ fn errors(estimate: &Estimate) -> [f64; 2] {
     [100.0 * (estimate.response.K() / 0.1 - 1.0), 100.0 * (estimate.response.T() / 16.3 - 1.0)]
 }
 
-/// Record with a gyro, whose noise is the heading noise of the case per second.
+/// Record with a rate gyro, whose noise is the heading noise of the case per second.
 fn with_gyro(case: &Case) -> Trial {
     let (truth, noisy) = (case.truth(), case.trial());
     let noise = noisy.heading().iter().zip(&truth.heading).map(|(seen, psi)| seen - psi);

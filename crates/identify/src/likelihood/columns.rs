@@ -14,7 +14,7 @@ pub struct MotionColumns {
 }
 
 impl MotionColumns {
-    /// The three columns of the heading.
+    /// Columns of the heading: φ₁, G and H.
     pub fn headings(&self) -> [&[f64]; 3] {
         [&self.homogeneous, &self.rudder, &self.constant]
     }

@@ -1,7 +1,7 @@
 //! Kalman filter of a noise law on a schedule.
 
 use estimation::kalman::whitener::Whitener;
-use estimation::kalman::{Filter, Sensor, System};
+use estimation::kalman::{Filter, StateSensor, System};
 use estimation::with_states;
 use trial::noise_model::MomentKind;
 
@@ -31,8 +31,8 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     let white = if compass.is_some() { 0.0 } else { 1.0 };
     // In the order of the sensors of `schedule`.
     let sensors = vec![
-        Sensor { state: 0, second_state: compass, variance: white },
-        Sensor { state: 1, second_state: None, variance: parameters.gyro * parameters.gyro },
+        StateSensor { state: 0, second_state: compass, variance: white },
+        StateSensor { state: 1, second_state: None, variance: parameters.gyro * parameters.gyro },
     ];
     let steps = schedule.spans.iter().map(|span| transition_step(parameters, span)).collect();
     System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }

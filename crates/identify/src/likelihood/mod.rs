@@ -4,7 +4,7 @@
 //! = K/T. The yaw moment (as acceleration) is absent, white (w of spectral density q²), an Ornstein–Uhlenbeck process
 //! m' = −m/τ + white of density 2q²/τ, or a random walk m' = white of density q². The recorded rudder, linear between
 //! its rows, may have an independent error in every row. The compass error is white, or of first order in time with its
-//! own correlation time; the gyro error is white.
+//! own correlation time; the rate-gyro error is white.
 //!
 //! All noise enters linearly, so gains and variances of the Kalman filter do not depend on the readings: the filter is
 //! a linear map that whitens residual and sensitivities, and −2 log L = Σ log 2πS + Σ ν²/S with innovations ν and their
@@ -32,8 +32,8 @@ pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
 pub use track::{MotionColumns, Track};
 
-/// Log-likelihood of the headings of a trial (and of the yaw rates, if `noise` has a gyro) for given ship parameters
-/// and a given noise law.
+/// Log-likelihood of the headings of a trial (and of the yaw rates, if `noise` has a rate-gyro error) for given ship
+/// parameters and a given noise law.
 ///
 /// The initial heading (rad) and yaw rate (rad/s) are normal about zero with the standard deviations `initial_sd`; a
 /// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite if a response

@@ -57,7 +57,7 @@ impl NoiseVector {
     }
 
     /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
-    pub fn to_model(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
+    pub fn to_model(&self, K_over_T: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
@@ -71,7 +71,7 @@ impl NoiseVector {
                 MomentKind::White => 0.0,
                 MomentKind::None | MomentKind::Walk => f64::INFINITY,
             },
-            rudder_sd: if self.has_rudder_error { size(RUDDER_INDEX) / gain.abs() } else { 0.0 },
+            rudder_sd: if self.has_rudder_error { size(RUDDER_INDEX) / K_over_T.abs() } else { 0.0 },
         }
     }
 
@@ -88,10 +88,10 @@ impl NoiseVector {
     }
 
     /// Noise parameters for this 1/T.
-    pub fn parameters(&self, inverse_time: f64) -> NoiseParameters {
+    pub fn parameters(&self, inverse_T: f64) -> NoiseParameters {
         let size = |entry: usize| self.log[entry].exp();
         NoiseParameters {
-            inverse_time,
+            inverse_T,
             moment: self.moment,
             level: size(LEVEL_INDEX),
             rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION_INDEX]).exp() } else { 0.0 },
@@ -106,7 +106,7 @@ impl NoiseVector {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoiseParameters {
     /// a = 1/T, 1/s.
-    pub inverse_time: f64,
+    pub inverse_T: f64,
     /// Kind of yaw moment.
     pub moment: MomentKind,
     /// Level q/σ of the moment.
@@ -117,7 +117,7 @@ pub struct NoiseParameters {
     pub rudder: Option<f64>,
     /// Inverse correlation time of the compass error, 1/s.
     pub compass_rate: Option<f64>,
-    /// Gyro error σ_r/σ, 1/s.
+    /// Rate-gyro error σ_r/σ, 1/s.
     pub gyro: f64,
 }
 

@@ -7,17 +7,17 @@ use super::track::{Track, durations_differ};
 /// Index of the compass among the sensors.
 pub const COMPASS_SENSOR: usize = 0;
 
-/// Index of the gyro among the sensors.
+/// Index of the rate gyro among the sensors.
 pub const GYRO_SENSOR: usize = 1;
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Span {
+pub struct ReadingInterval {
     /// Durations of the pieces, s.
     pub pieces: Vec<f64>,
 }
 
-impl Span {
+impl ReadingInterval {
     /// Duration of the span, s.
     pub fn duration(&self) -> f64 {
         self.pieces.iter().sum()
@@ -28,11 +28,11 @@ impl Span {
     }
 }
 
-/// Sequence of the compass and gyro readings of a record, with the time spans between them.
+/// Sequence of the compass and rate-gyro readings of a record, with the time spans between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// Kinds of steps.
-    pub spans: Vec<Span>,
+    pub spans: Vec<ReadingInterval>,
     /// Readings in order.
     pub readings: Vec<Reading>,
 }
@@ -76,7 +76,7 @@ impl Schedule {
         if let Some(place) = self.spans[recent..].iter().rposition(|span| span.has_pieces(pieces)) {
             return recent + place;
         }
-        self.spans.push(Span { pieces: pieces.to_vec() });
+        self.spans.push(ReadingInterval { pieces: pieces.to_vec() });
         self.spans.len() - 1
     }
 

@@ -82,21 +82,22 @@ pub struct RudderCorner {
 }
 
 impl RudderCorner {
-    /// Contribution to the heading (rad s²) and the yaw rate (rad s) at the end of the step, for b = 1/s².
+    /// Contribution of the corner to the heading (rad) and the yaw rate (rad/s) at the end of the step, over b = K/T:
+    /// in rad s² and rad s.
     #[inline]
-    pub fn response(&self, inverse_time: f64) -> [f64; 2] {
-        let step = Transition::new(inverse_time, self.remaining);
+    pub fn response(&self, inverse_T: f64) -> [f64; 2] {
+        let step = Transition::new(inverse_T, self.remaining);
         [step.phi3 * self.change, step.phi2 * self.change]
     }
 }
 
-/// Coefficients of the four columns.
+/// Coefficients of the columns of the response: the initial state, the rudder and the constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coefficients {
     /// Heading (rad) and yaw rate (rad/s) at the anchor.
     pub anchor: State,
     /// b = K/T, 1/s².
-    pub gain: f64,
+    pub K_over_T: f64,
     /// b δ_r, rad/s².
     pub offset: f64,
 }
@@ -104,13 +105,13 @@ pub struct Coefficients {
 impl Coefficients {
     /// Coefficients with the steering of a response and an anchor at rest.
     pub fn from_response(response: &FirstOrder) -> Self {
-        Self { anchor: State::default(), gain: response.K_over_T, offset: response.K_over_T * response.rudder_bias }
+        Self { anchor: State::default(), K_over_T: response.K_over_T, offset: response.K_over_T * response.rudder_bias }
     }
 }
 
 /// `true` if the anchor of the columns is the last row.
-pub fn is_backward(inverse_time: f64) -> bool {
-    inverse_time < 0.0
+pub fn is_backward(inverse_T: f64) -> bool {
+    inverse_T < 0.0
 }
 
 impl Track {
@@ -223,13 +224,13 @@ impl Track {
         if backward { self.time.len() - 1 } else { 0 }
     }
 
-    /// Fills the columns for a = `inverse_time`, 1/s.
-    pub fn fill_columns(&self, inverse_time: f64, columns: &mut MotionColumns) {
-        self.fill_from(is_backward(inverse_time), inverse_time, columns);
+    /// Fills the columns for a = `inverse_T`, 1/s.
+    pub fn fill_columns(&self, inverse_T: f64, columns: &mut MotionColumns) {
+        self.fill_from(is_backward(inverse_T), inverse_T, columns);
     }
 
     /// Fills the columns with the anchor at the last row, or at the first, for either sign of a.
-    pub fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut MotionColumns) {
+    pub fn fill_from(&self, backward: bool, inverse_T: f64, columns: &mut MotionColumns) {
         let (rows, anchor) = (self.time.len(), self.anchor_row(backward));
         let MotionColumns { homogeneous, rudder, constant, rates } = columns;
         for column in [&mut *homogeneous, rudder, constant] {
@@ -238,7 +239,7 @@ impl Track {
         }
         let (f, g, h) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
         if self.observed_rates.is_empty() {
-            self.motions(inverse_time, backward, |row, heading, _| {
+            self.motions(inverse_T, backward, |row, heading, _| {
                 [f[row], g[row], h[row], _] = heading;
             });
         } else {
@@ -247,7 +248,7 @@ impl Track {
                 column.resize(rows, 0.0);
                 column[anchor] = start;
             }
-            self.motions(inverse_time, backward, |row, heading, rate| {
+            self.motions(inverse_T, backward, |row, heading, rate| {
                 [f[row], g[row], h[row], _] = heading;
                 [rates.homogeneous[row], rates.rudder[row], rates.constant[row], _] = rate;
             });
@@ -263,12 +264,12 @@ impl Track {
     /// Visits heading and yaw rate of the three motions φ₁, G, H (and a fourth at rest, for alignment) at every row but
     /// the anchor.
     #[inline(always)]
-    fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
+    fn motions(&self, inverse_T: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
-        let mut step = Transition::new(inverse_time, 0.0);
+        let mut step = Transition::new(inverse_T, 0.0);
         for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
             if durations_differ(step.h, duration) {
-                step = Transition::new(inverse_time, duration);
+                step = Transition::new(inverse_T, duration);
             }
             let delta = self.rudder[from_row];
             let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
@@ -278,7 +279,7 @@ impl Track {
                 yaw_rate[motion] = step.decay * yaw_rate[motion] + of_rate[motion];
             }
             if let Some(bend) = bend {
-                let [more_heading, more_rate] = bend.response(inverse_time);
+                let [more_heading, more_rate] = bend.response(inverse_T);
                 heading[1] += more_heading;
                 yaw_rate[1] += more_rate;
             }
@@ -287,29 +288,29 @@ impl Track {
     }
 
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
-    pub fn sensitivity(&self, inverse_time: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
+    pub fn sensitivity(&self, inverse_T: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
         out.resize(self.time.len(), 0.0);
-        out[self.anchor_row(is_backward(inverse_time))] = 0.0;
+        out[self.anchor_row(is_backward(inverse_T))] = 0.0;
         let column = &mut out[..self.time.len()];
-        self.tangents(inverse_time, coefficients, |row, by_heading| column[row] = by_heading);
+        self.tangents(inverse_T, coefficients, |row, by_heading| column[row] = by_heading);
         keep(&self.observed, out);
     }
 
     /// Visits ∂ψ/∂a at every row but the anchor.
     #[inline(always)]
-    fn tangents(&self, inverse_time: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64)) {
-        let backward = is_backward(inverse_time);
+    fn tangents(&self, inverse_T: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64)) {
+        let backward = is_backward(inverse_T);
         let anchor = coefficients.anchor;
         // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
-        let mut step = TangentTransition::new(inverse_time, 0.0);
+        let mut step = TangentTransition::new(inverse_T, 0.0);
         for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
             if durations_differ(step.value.h, duration) {
-                step = TangentTransition::new(inverse_time, duration);
+                step = TangentTransition::new(inverse_T, duration);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
-            let u0 = coefficients.gain * self.rudder[from_row] + coefficients.offset;
-            let slope = coefficients.gain * rate;
+            let u0 = coefficients.K_over_T * self.rudder[from_row] + coefficients.offset;
+            let slope = coefficients.K_over_T * rate;
             let r = yaw_rate[1];
             let of_heading = [d.phi1 * r + (d.phi2 * u0 + d.phi3 * slope), f.phi2 * u0 + f.phi3 * slope];
             let of_rate = [d.decay * r + (d.phi1 * u0 + d.phi2 * slope), f.phi1 * u0 + f.phi2 * slope];
@@ -318,8 +319,8 @@ impl Track {
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
             if let Some(RudderCorner { remaining, change }) = bend {
-                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, remaining);
-                let change = coefficients.gain * change;
+                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_T, remaining);
+                let change = coefficients.K_over_T * change;
                 for (motion, part) in [by_inverse_T.phi3, value.phi3].into_iter().enumerate() {
                     heading[motion] += part * change;
                 }
@@ -332,39 +333,39 @@ impl Track {
     }
 
     /// Heading and yaw rate of every row (observed or not) for given coefficients.
-    pub fn simulate(&self, inverse_time: f64, coefficients: &Coefficients) -> Vec<State> {
+    pub fn simulate(&self, inverse_T: f64, coefficients: &Coefficients) -> Vec<State> {
         let mut states = vec![State::default(); self.time.len()];
-        self.simulate_from(is_backward(inverse_time), inverse_time, coefficients, |row, state| states[row] = state);
+        self.simulate_from(is_backward(inverse_T), inverse_T, coefficients, |row, state| states[row] = state);
         states
     }
 
     /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
-    pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
+    pub fn last_state_from(&self, inverse_T: f64, coefficients: &Coefficients) -> State {
         let mut last = coefficients.anchor;
-        self.simulate_from(false, inverse_time, coefficients, |_, state| last = state);
+        self.simulate_from(false, inverse_T, coefficients, |_, state| last = state);
         last
     }
 
     fn simulate_from(
         &self,
         backward: bool,
-        inverse_time: f64,
+        inverse_T: f64,
         coefficients: &Coefficients,
         mut visit: impl FnMut(usize, State),
     ) {
         let mut state = coefficients.anchor;
         visit(self.anchor_row(backward), state);
-        let mut step = Transition::new(inverse_time, 0.0);
+        let mut step = Transition::new(inverse_T, 0.0);
         for TrackStep { from_row, to_row, duration, rudder_rate, bend } in self.steps(backward) {
             if durations_differ(step.h, duration) {
-                step = Transition::new(inverse_time, duration);
+                step = Transition::new(inverse_T, duration);
             }
-            let u0 = coefficients.gain * self.rudder[from_row] + coefficients.offset;
-            state = step.advance(state, u0, coefficients.gain * rudder_rate);
+            let u0 = coefficients.K_over_T * self.rudder[from_row] + coefficients.offset;
+            state = step.advance(state, u0, coefficients.K_over_T * rudder_rate);
             if let Some(bend) = bend {
-                let [heading, yaw_rate] = bend.response(inverse_time);
-                state.heading += coefficients.gain * heading;
-                state.yaw_rate += coefficients.gain * yaw_rate;
+                let [heading, yaw_rate] = bend.response(inverse_T);
+                state.heading += coefficients.K_over_T * heading;
+                state.yaw_rate += coefficients.K_over_T * yaw_rate;
             }
             visit(to_row, state);
         }

@@ -6,7 +6,7 @@ use ship::first_order::Transition;
 use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseParameters;
-use super::schedule::Span;
+use super::schedule::ReadingInterval;
 
 /// Number of terms of the series of the matrix exponential over one scaled step.
 const TERMS: usize = 16;
@@ -30,7 +30,7 @@ type Small = [[f64; 3]; 3];
 
 /// Transition and process noise between two readings: the pieces of the rudder in order, and the decay of the compass
 /// error over the whole time.
-pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span: &Span) -> Step<N> {
+pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span: &ReadingInterval) -> Step<N> {
     let mut whole = match parameters.rudder {
         None => undisturbed(parameters, span.duration()),
         Some(size) => {
@@ -50,7 +50,7 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
 
 /// Step of ship and moment without rudder error: a short step F, Q, doubled by F F and Q + F Q Fᵀ up to `duration`, s.
 fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> Step<N> {
-    let rates = parameters.inverse_time.abs() + parameters.rate;
+    let rates = parameters.inverse_T.abs() + parameters.rate;
     let doublings = (rates * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, duration / doublings.exp2());
     for _ in 0..doublings as usize {
@@ -70,7 +70,7 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> S
 /// Adds the error of the recorded rudder at both ends of a piece, between which it is linear.
 fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, size: f64, duration: f64) -> Step<N> {
     let Some(place) = parameters.rudder_state() else { return step };
-    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_time, duration);
+    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_T, duration);
     let after = [phi3 / duration, phi2 / duration];
     let before = [phi2 - after[0], phi1 - after[1]];
     let mut fresh = [0.0; N];
@@ -91,7 +91,7 @@ fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, 
 /// Transition and covariance over a step that is short against T and τ. Time is counted in steps, so that the series
 /// has no units: z = (ψ, r h, m h²).
 fn short(parameters: &NoiseParameters, h: f64) -> (Small, Small) {
-    let (x, y) = (parameters.inverse_time * h, parameters.rate * h);
+    let (x, y) = (parameters.inverse_T * h, parameters.rate * h);
     // Coefficients of the motion after an impulse on r, and on m: (ψ, r, m) as polynomials of time.
     let mut of_rate = [[0.0; TERMS]; 3];
     let mut of_moment = [[0.0; TERMS]; 3];

@@ -49,18 +49,18 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
 /// Degrees of freedom of the variances of K, T and δ_r, the minimum of the three: the uncertainty of the noise sizes
 /// makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
 fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
-    let Point { inverse_time, gain, offset, ref vectors, ref parts, .. } = maximum.point;
+    let Point { inverse_T, K_over_T, offset, ref vectors, ref parts, .. } = maximum.point;
     let motion = |number: usize, vector: &NoiseVector| {
         let part = &parts[number];
-        let coefficients = Coefficients { anchor: part.anchor, gain, offset };
-        let products = records[number].information(inverse_time, vector, &coefficients);
+        let coefficients = Coefficients { anchor: part.anchor, K_over_T, offset };
+        let products = records[number].information(inverse_T, vector, &coefficients);
         products.map(|products| products / part.variance)
     };
     let motions: Vec<Matrix3<f64>> = parts.iter().map(|part| part.motion / part.variance).collect();
     let inverse = motions.iter().sum::<Matrix3<f64>>().try_inverse();
     let Some(inverse) = inverse else { return 1.0 };
     // Gradients of log K, log T and δ_r with respect to (1/T, b, b δ_r).
-    let (a, b) = (inverse_time, gain);
+    let (a, b) = (inverse_T, K_over_T);
     let directions = [
         Vector3::new(-1.0 / a, 1.0 / b, 0.0),
         Vector3::new(1.0, 0.0, 0.0),
@@ -109,7 +109,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
 /// Covariance of (1/T, b, b δ_r) and degrees of freedom of the variances, averaged over the plausible noise laws, about
 /// the estimate of the most plausible law.
 fn averaged_covariance(chosen: &ChosenLaw, freedom: f64) -> (Matrix3<f64>, f64) {
-    let estimate_of = |point: &Point| Vector3::new(point.inverse_time, point.gain, point.offset);
+    let estimate_of = |point: &Point| Vector3::new(point.inverse_T, point.K_over_T, point.offset);
     let here = estimate_of(&chosen.maxima[0].1.point);
     let (mut total, mut weights, mut per_freedom) = (Matrix3::zeros(), 0.0, 0.0);
     for (weight, maximum) in &chosen.maxima {
@@ -126,8 +126,8 @@ fn averaged_covariance(chosen: &ChosenLaw, freedom: f64) -> (Matrix3<f64>, f64) 
 pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, IdentifyError> {
     let ChosenLaw { records, maxima, is_at_bound, .. } = &chosen;
     let maximum = &maxima[0].1;
-    let Point { inverse_time, gain, offset, deviance, ref vectors, ref parts, .. } = maximum.point;
-    let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
+    let Point { inverse_T, K_over_T, offset, deviance, ref vectors, ref parts, .. } = maximum.point;
+    let response = FirstOrder { inverse_T, K_over_T, rudder_bias: offset / K_over_T };
     let readings: usize = parts.iter().map(|part| part.readings).sum();
     let jumps: usize = records.iter().map(|record| record.jumps.len()).sum();
     let freedom = readings as f64 - (SHARED_PARAMETERS + 2 * trials.len() + jumps) as f64;
@@ -135,9 +135,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let (inverse, condition) = covariance(&maximum.derivatives.information).map_err(singular)?;
     let (averaged, degrees_of_freedom) = averaged_covariance(&chosen, freedom);
     let white = response_covariance(&averaged, &response, degrees_of_freedom);
-    let gain_sd = white.matrix[(1, 1)].sqrt();
-    if gain < MIN_GAIN_DEVIATIONS * gain_sd {
-        return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
+    let sd = white.matrix[(1, 1)].sqrt();
+    if K_over_T < MIN_GAIN_DEVIATIONS * sd {
+        return Err(IdentifyError::NoRudderEffect { K_over_T, sd });
     }
     let scores: Vec<[Vec<f64>; 3]> = (maximum.derivatives.scores.iter().zip(parts))
         .map(|(scores, part)| scores.each_ref().map(|column| column.iter().map(|x| x / part.variance).collect()))
@@ -151,9 +151,9 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let beyond = || format!("T = {} s lies at or beyond the limit of the search", ShortNumber(response.T()));
     warnings.extend(is_at_bound.then(|| WarningCode::AtBound.warning(beyond())));
     let noises: Vec<NoiseModel> = (records.iter().zip(vectors.iter().zip(parts)))
-        .map(|(record, (vector, part))| vector.to_model(gain, part.variance.sqrt(), record.has_gyro()))
+        .map(|(record, (vector, part))| vector.to_model(K_over_T, part.variance.sqrt(), record.has_gyro()))
         .collect();
-    warnings.extend(trials.iter().zip(&noises).filter_map(|(trial, noise)| noise_warning(trial, noise, gain)));
+    warnings.extend(trials.iter().zip(&noises).filter_map(|(trial, noise)| noise_warning(trial, noise, K_over_T)));
     warnings.extend(outlier_warnings(trials, &chosen));
     let mut diagnostics = vec![
         ("log_likelihood", -0.5 * deviance),
@@ -161,7 +161,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
         ("lag1_autocorrelation", lag1),
         ("degrees_of_freedom", degrees_of_freedom),
     ];
-    diagnostics.extend(noise_diagnostics(&noises[0], gain, &chosen));
+    diagnostics.extend(noise_diagnostics(&noises[0], K_over_T, &chosen));
     Ok(Estimate {
         response,
         uncertainty,
@@ -172,7 +172,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
             (false, false) => StopReason::IterationLimit,
         },
         evaluations: chosen.evaluations,
-        noise: Some(HeadingNoise { heading_sd_rad: noises[0].heading_sd, moment: random_moment(&noises[0], gain) }),
+        noise: Some(HeadingNoise { heading_sd_rad: noises[0].heading_sd, moment: random_moment(&noises[0], K_over_T) }),
         diagnostics,
         warnings,
     })
@@ -206,7 +206,7 @@ fn outlier_warnings(trials: &[Trial], chosen: &ChosenLaw) -> Vec<Warning> {
 }
 
 /// Diagnostics of the noise of the first record, of the outliers, and of the kinds of moment that were fitted.
-fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &ChosenLaw) -> Vec<(&'static str, f64)> {
+fn noise_diagnostics(noise: &NoiseModel, K_over_T: f64, chosen: &ChosenLaw) -> Vec<(&'static str, f64)> {
     let count = |suspects: fn(&Suspects) -> usize| chosen.outliers.iter().map(suspects).sum::<usize>() as f64;
     let mut diagnostics = vec![
         ("heading_sd_deg", to_deg(noise.heading_sd)),
@@ -215,7 +215,7 @@ fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &ChosenLaw) -> Vec<(
     ];
     diagnostics.extend(noise.heading_correlation.map(|time| ("heading_correlation_s", time)));
     diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
-    match random_moment(noise, gain) {
+    match random_moment(noise, K_over_T) {
         RandomMoment::None => {}
         RandomMoment::White { rudder_rad_root_s: size } => {
             diagnostics.push(("white_moment_rudder_deg_root_s", to_deg(size)));
@@ -241,9 +241,9 @@ fn noise_diagnostics(noise: &NoiseModel, gain: f64, chosen: &ChosenLaw) -> Vec<(
     diagnostics
 }
 
-/// Random moment of a noise law as the rudder angle of a ship with K/T = `gain`.
-fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
-    let rudder = noise.moment_level / gain;
+/// Random moment of a noise law as the rudder angle of a ship with this K/T, 1/s².
+fn random_moment(noise: &NoiseModel, K_over_T: f64) -> RandomMoment {
+    let rudder = noise.moment_level / K_over_T;
     match noise.moment {
         MomentKind::None => RandomMoment::None,
         MomentKind::White => RandomMoment::White { rudder_rad_root_s: rudder },
@@ -255,9 +255,9 @@ fn random_moment(noise: &NoiseModel, gain: f64) -> RandomMoment {
 }
 
 /// Warning that lists the noise beyond a white compass error.
-fn noise_warning(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<Warning> {
+fn noise_warning(trial: &Trial, noise: &NoiseModel, K_over_T: f64) -> Option<Warning> {
     let mut parts = Vec::new();
-    match random_moment(noise, gain) {
+    match random_moment(noise, K_over_T) {
         RandomMoment::None => {}
         RandomMoment::White { rudder_rad_root_s: size } => {
             parts.push(format!("gusts whose mean over 1 s is like {:.3} deg of rudder", to_deg(size)));

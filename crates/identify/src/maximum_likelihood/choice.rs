@@ -105,7 +105,7 @@ impl PreparedRecords {
         }
         let first = first?;
         let gyro = settings.uses_yaw_rate
-            && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
+            && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.is_heading_integrated());
         let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
         let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
@@ -160,7 +160,7 @@ impl PreparedRecords {
         let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
         let weigh = |(bic, maximum): (f64, Maximum)| ((-0.5 * (bic - lowest)).exp() / sum, maximum);
         let maxima: Vec<(f64, Maximum)> = all.into_iter().map(weigh).filter(|(share, _)| *share > MIN_WEIGHT).collect();
-        let end = maxima[0].1.point.inverse_time;
+        let end = maxima[0].1.point.inverse_T;
         let is_at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
         Ok(ChosenLaw { records, maxima, outliers: kept, has_too_many_outliers, tried, evaluations: spent, is_at_bound })
     }
@@ -173,9 +173,10 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
     let ship = estimate.response;
     let mut columns = MotionColumns::default();
     track.fill_columns(ship.inverse_T, &mut columns);
-    let Coefficients { gain, offset, .. } = Coefficients::from_response(&ship);
+    let Coefficients { K_over_T, offset, .. } = Coefficients::from_response(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
-    let free: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
+    let free: Vec<f64> =
+        track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - K_over_T * g - offset * h).collect();
     let without_spikes = |values: &[f64]| -> Vec<f64> {
         let rows = track.observed.iter().zip(values);
         rows.filter(|(row, _)| !excluded.contains(row)).map(|(_, &value)| value).collect()
@@ -244,7 +245,7 @@ fn fit_laws(
     // optimal.
     let is_coloured = |v: &NoiseVector| v.moment != MomentKind::None || v.has_coloured_compass || v.has_rudder_error;
     if let Some((_, best)) = lowest(&all).filter(|(_, best)| best.point.vectors.iter().any(is_coloured)) {
-        let elsewhere = best_inverse_time(&mut search, best.point.inverse_time, &best.point.vectors);
+        let elsewhere = best_inverse_T(&mut search, best.point.inverse_T, &best.point.vectors);
         if elsewhere.as_ref().is_some_and(|point| point.deviance < best.point.deviance) {
             all.extend(elsewhere.and_then(|better| search.highest(better)));
         }
@@ -337,7 +338,7 @@ fn coloured_compass_starts(all: &Ranked, compass: CompassChoice) -> Vec<Start> {
     let alone = alone.filter(|_| best.is_some_and(|best| !is_plain(best)));
     let coloured = |maximum: &Maximum| {
         let vectors = maximum.point.vectors.iter().map(|vector| NoiseVector { has_coloured_compass: true, ..*vector });
-        (maximum.point.inverse_time, vectors.collect())
+        (maximum.point.inverse_T, vectors.collect())
     };
     [best, alone].into_iter().flatten().filter(is_correlated).map(coloured).collect()
 }
@@ -347,14 +348,14 @@ fn lowest(all: &[(f64, Maximum)]) -> Option<&(f64, Maximum)> {
 }
 
 /// Best of other values of 1/T, of both signs, under unchanged noise.
-fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVector]) -> Option<Point> {
+fn best_inverse_T(search: &mut Search, inverse_T: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
     let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);
     let (slowest, fastest) = (0.2 / longest, 0.5 / finest);
     let decades = (fastest / slowest).log10();
     let points = (decades * VALUES_PER_DECADE as f64).ceil() as usize;
     let sizes = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
-    let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_time).abs() > 0.2 * a.abs()).collect();
+    let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_T).abs() > 0.2 * a.abs()).collect();
     let starts: Vec<Start> = starts.into_iter().map(|a| (a, vectors.to_vec())).collect();
     search.best_start(&starts, |point| point.deviance)
 }
@@ -363,7 +364,7 @@ fn best_inverse_time(search: &mut Search, inverse_time: f64, vectors: &[NoiseVec
 fn keep_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
     for number in 0..records.len() {
         for jump in outliers[number].jumps.clone() {
-            let start = [(point.inverse_time, point.vectors.clone())];
+            let start = [(point.inverse_T, point.vectors.clone())];
             let height = |records: &[Record]| Some(evaluate(records, &start).pop()??.deviance);
             let before = height(records);
             records[number].jumps.push(jump);

@@ -141,7 +141,7 @@ fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Neighbours>; 2]> 
     (0..rows).map(sides).collect()
 }
 
-/// First readings after changes of level.
+/// Indices of the first reading after each change of level, ascending; `floor` is the least limit of a change.
 fn jumps(residual: &[f64], kept: &[usize], floor: f64) -> Vec<usize> {
     if kept.len() < 4 * SIDE {
         return Vec::new();

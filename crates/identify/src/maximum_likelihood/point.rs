@@ -48,7 +48,7 @@ const INITIAL_STATE: usize = 2;
 /// Columns of the readings of one record for one 1/T.
 #[derive(Debug, Clone)]
 struct RecordColumns {
-    inverse_time: f64,
+    inverse_T: f64,
     /// At every reading the constant, the response to the initial yaw rate, the responses to rudder and constant, the
     /// reading, and the derivatives of the three responses with respect to 1/T.
     rows: Vec<InterleavedRow>,
@@ -60,9 +60,11 @@ struct RecordColumns {
 /// rudder and constant, and the readings.
 #[derive(Debug, Clone)]
 pub(super) struct WhitenedColumns {
+    /// Whitening filter of the record.
     pub filter: Whitener,
     /// Triangular factor R of the nuisance columns Q R of the initial state and the jumps.
     triangle: DMatrix<f64>,
+    /// Responses to rudder and constant, and readings, projected off the nuisance columns.
     pub projected: [Vec<f64>; 3],
     /// Derivatives of [`RecordColumns`], projected off the nuisance columns.
     tangents: [Vec<f64>; 3],
@@ -77,15 +79,17 @@ pub(super) struct RecordAtPoint {
     pub variance: f64,
     /// Number of readings.
     pub readings: usize,
-    /// Heading and yaw rate at the anchor.
+    /// Heading (rad) and yaw rate (rad/s) at the anchor.
     pub anchor: State,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
-    /// Contribution to −2 log L, and the additional contribution to the restricted likelihood.
+    /// Contribution to −2 log L.
     pub deviance: f64,
+    /// Additional contribution to −2 log of the restricted likelihood.
     pub determinant: f64,
-    /// Products of the sensitivities to 1/T, b and b δ_r.
+    /// Sums of products of the sensitivities to 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
+    /// Whitened columns.
     pub white: WhitenedColumns,
     /// Whitened sensitivity of the readings to 1/T, projected off the nuisance columns.
     pub by_time: Vec<f64>,
@@ -97,14 +101,17 @@ pub(super) type Start = (f64, Vec<NoiseVector>);
 /// Best fit for one 1/T and one noise law of every record.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
-    pub inverse_time: f64,
+    pub inverse_T: f64,
     pub vectors: Vec<NoiseVector>,
-    /// −2 log L, and −2 log of the restricted likelihood.
+    /// −2 log L.
     pub deviance: f64,
+    /// −2 log of the restricted likelihood.
     pub restricted: f64,
-    /// b = K/T, 1/s², and b δ_r, rad/s².
-    pub gain: f64,
+    /// b = K/T, 1/s².
+    pub K_over_T: f64,
+    /// b δ_r, rad/s².
     pub offset: f64,
+    /// Likelihood contributions of the records.
     pub parts: Vec<RecordAtPoint>,
 }
 
@@ -148,12 +155,12 @@ impl Record {
     }
 
     /// Columns of a ship with this 1/T; the columns of the last 1/T are cached.
-    fn columns(&self, inverse_time: f64) -> Rc<RecordColumns> {
+    fn columns(&self, inverse_T: f64) -> Rc<RecordColumns> {
         let mut last = self.last_columns.borrow_mut();
-        if let Some(columns) = last.as_ref().filter(|columns| columns.is_of(self, inverse_time)) {
+        if let Some(columns) = last.as_ref().filter(|columns| columns.is_of(self, inverse_T)) {
             return Rc::clone(columns);
         }
-        let columns = Rc::new(RecordColumns::new(self, inverse_time));
+        let columns = Rc::new(RecordColumns::new(self, inverse_T));
         *last = Some(Rc::clone(&columns));
         columns
     }
@@ -162,8 +169,8 @@ impl Record {
     /// if a column is not finite. Two filters advance side by side.
     fn whitened(&self, cases: &[(f64, NoiseParameters)]) -> Vec<Option<WhitenedColumns>> {
         let whitened_pair = |pair: &[(f64, NoiseParameters)]| {
-            let case = |(inverse_time, noise): &(f64, NoiseParameters)| {
-                (self.columns(*inverse_time), whitener(&self.schedule, noise, [0.0; 2]))
+            let case = |(inverse_T, noise): &(f64, NoiseParameters)| {
+                (self.columns(*inverse_T), whitener(&self.schedule, noise, [0.0; 2]))
             };
             let cases: Vec<_> = pair.iter().map(case).collect();
             let [white, beside] = &mut *self.white.borrow_mut();
@@ -185,11 +192,11 @@ impl Record {
     /// eliminated; divided by σ² they are the information of the motion.
     pub fn information(
         &self,
-        inverse_time: f64,
+        inverse_T: f64,
         vector: &NoiseVector,
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
-        let white = self.whitened(&[(inverse_time, vector.parameters(inverse_time))]).pop()??;
+        let white = self.whitened(&[(inverse_T, vector.parameters(inverse_T))]).pop()??;
         let by_time = white.by_time(coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
@@ -217,21 +224,21 @@ fn instrument_rows(
 }
 
 impl RecordColumns {
-    fn new(record: &Record, inverse_time: f64) -> Self {
+    fn new(record: &Record, inverse_T: f64) -> Self {
         let Record { track, schedule, jumps, .. } = record;
         let (mut motion, mut by_time) = (MotionColumns::default(), MotionColumns::default());
-        fill_with_tangents(track, inverse_time, &mut motion, &mut by_time);
+        fill_with_tangents(track, inverse_T, &mut motion, &mut by_time);
         let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_time.headings());
         let mut rates = instrument_rows(0.0, motion.rates.all(), &track.rates, by_time.rates.all());
         let row = |reading: &Reading| if reading.sensor() == COMPASS_SENSOR { headings.next() } else { rates.next() };
         let mut rows = Vec::with_capacity(record.len());
         rows.extend(schedule.readings.iter().filter_map(row));
-        Self { inverse_time, rows, jumps: jumps.iter().map(|&jump| record.step_at(jump)).collect() }
+        Self { inverse_T, rows, jumps: jumps.iter().map(|&jump| record.step_at(jump)).collect() }
     }
 
     /// `true` if these are the columns of a record for this 1/T.
-    fn is_of(&self, record: &Record, inverse_time: f64) -> bool {
-        self.inverse_time == inverse_time && self.jumps.len() == record.jumps.len()
+    fn is_of(&self, record: &Record, inverse_T: f64) -> bool {
+        self.inverse_T == inverse_T && self.jumps.len() == record.jumps.len()
     }
 }
 
@@ -271,9 +278,9 @@ impl WhitenedColumns {
     }
 
     /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
-    fn by_time(&self, Coefficients { anchor, gain, offset }: &Coefficients) -> Vec<f64> {
+    fn by_time(&self, Coefficients { anchor, K_over_T, offset }: &Coefficients) -> Vec<f64> {
         let [by_yaw_rate, by_rudder, by_constant] = &self.tangents;
-        let steered = by_rudder.iter().zip(by_constant).map(|(g, h)| gain * g + offset * h);
+        let steered = by_rudder.iter().zip(by_constant).map(|(g, h)| K_over_T * g + offset * h);
         by_yaw_rate.iter().zip(steered).map(|(f, steered)| anchor.yaw_rate * f + steered).collect()
     }
 
@@ -284,15 +291,15 @@ impl WhitenedColumns {
     }
 
     /// Whitened readings minus b G and b δ_r H, all projected off the nuisance columns.
-    fn residual(&self, gain: f64, offset: f64) -> Vec<f64> {
+    fn residual(&self, K_over_T: f64, offset: f64) -> Vec<f64> {
         let [rudder, constant, readings] = &self.projected;
-        readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
+        readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - K_over_T * g - offset * h).collect()
     }
 
     /// Heading and yaw rate at the anchor for given b and b δ_r, by back substitution; 0 where they are unobservable.
-    fn start(&self, gain: f64, offset: f64) -> Option<State> {
+    fn start(&self, K_over_T: f64, offset: f64) -> Option<State> {
         let [rudder, constant, readings] = &self.shares;
-        let along = (0..readings.len()).map(|k| readings[k] - gain * rudder[k] - offset * constant[k]);
+        let along = (0..readings.len()).map(|k| readings[k] - K_over_T * rudder[k] - offset * constant[k]);
         let mut along = DVector::from_iterator(readings.len(), along);
         // An unobservable initial state is zero.
         let mut triangle = self.triangle.clone();
@@ -324,12 +331,12 @@ impl RecordAtPoint {
     /// the ship. `None` if one is not finite.
     pub fn under(
         record: &Record,
-        inverse_time: f64,
+        inverse_T: f64,
         steering: [f64; 2],
         noises: &[(NoiseVector, f64)],
         readings: usize,
     ) -> Option<Vec<Self>> {
-        let cases = noises.iter().map(|(noise, filtered)| (inverse_time, noise.parameters(*filtered)));
+        let cases = noises.iter().map(|(noise, filtered)| (inverse_T, noise.parameters(*filtered)));
         let whites = record.whitened(&cases.collect::<Vec<_>>());
         let part = |(white, (noise, _)): (Option<WhitenedColumns>, &(NoiseVector, f64))| {
             let white = white?;
@@ -342,25 +349,25 @@ impl RecordAtPoint {
 
     fn from_columns(
         record: &Record,
-        [gain, offset]: [f64; 2],
+        [K_over_T, offset]: [f64; 2],
         white: WhitenedColumns,
         weight: &Weight,
         variance: f64,
     ) -> Option<Self> {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
-        let deviance = weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
-        let anchor = white.start(gain, offset)?;
+        let deviance = weight.readings * constant + weight.rss(K_over_T, offset) / variance + white.filter.log_variance;
+        let anchor = white.start(K_over_T, offset)?;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         let determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
-        let by_time = white.by_time(&Coefficients { anchor, gain, offset });
-        let (motion, innovations) = (white.motion(&by_time), white.residual(gain, offset));
+        let by_time = white.by_time(&Coefficients { anchor, K_over_T, offset });
+        let (motion, innovations) = (white.motion(&by_time), white.residual(K_over_T, offset));
         let readings = record.len();
         Some(Self { variance, readings, anchor, innovations, deviance, determinant, motion, white, by_time })
     }
 }
 
-/// Number of readings of all records, compass and gyro.
+/// Number of readings of all records, of compass and rate gyro.
 pub(super) fn reading_count(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
@@ -382,7 +389,7 @@ pub(super) fn evaluate(records: &[Record], starts: &[Start]) -> Vec<Option<Point
 
 /// Best b and b δ_r over all records from their whitened columns; `None` unless b is positive and the likelihood
 /// finite.
-fn point(records: &[Record], (inverse_time, vectors): &Start, columns: Vec<WhitenedColumns>) -> Option<Point> {
+fn point(records: &[Record], (inverse_T, vectors): &Start, columns: Vec<WhitenedColumns>) -> Option<Point> {
     let all = reading_count(records);
     let weights = records.iter().zip(vectors).zip(&columns);
     let weights: Vec<Weight> = weights.map(|((record, vector), white)| weight(record, vector, white, all)).collect();
@@ -395,15 +402,15 @@ fn point(records: &[Record], (inverse_time, vectors): &Start, columns: Vec<White
     let deviance = parts.iter().map(|part| part.deviance).sum::<f64>();
     let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();
     let determinant = parts.iter().map(|part| part.determinant).sum::<f64>() + motion.determinant().ln();
-    let [gain, offset] = steering;
+    let [K_over_T, offset] = steering;
     let restricted = deviance + determinant;
-    let ship = gain > 0.0 && restricted.is_finite();
+    let ship = K_over_T > 0.0 && restricted.is_finite();
     ship.then(|| Point {
-        inverse_time: *inverse_time,
+        inverse_T: *inverse_T,
         vectors: vectors.clone(),
         deviance,
         restricted,
-        gain,
+        K_over_T,
         offset,
         parts,
     })

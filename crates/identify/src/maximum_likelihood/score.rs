@@ -78,7 +78,7 @@ impl ScoreAndInformation {
     /// not finite.
     fn add(&mut self, records: &[Record], point: &Point, number: usize, entries: Range<usize>) -> Option<()> {
         let (record, part, vector) = (&records[number], &point.parts[number], &point.vectors[number]);
-        let (all, a, steering) = (reading_count(records), point.inverse_time, [point.gain, point.offset]);
+        let (all, a, steering) = (reading_count(records), point.inverse_T, [point.K_over_T, point.offset]);
         let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
         let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.

@@ -9,9 +9,10 @@ use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS_INDEX, CORRELATION_INDEX, GYRO_INDEX, LEVEL_INDEX, RUDDER_INDEX};
 use trial::noise_model::MomentKind;
 
-/// Predicted decrease of −log L at convergence: a hundredth of a standard deviation of the noise. A search over 1/T
-/// alone must be as exact as `output-error`.
+/// Predicted decrease of −log L at which a search has converged: a hundredth of a standard deviation of the noise.
 const MIN_DECREASE: f64 = 2e-4;
+
+/// The same for a search over 1/T alone, which must be as exact as `output-error`.
 const MIN_DECREASE_ALONE: f64 = 1e-12;
 
 /// Maximum increase of −2 log of the restricted likelihood in a step.
@@ -32,8 +33,9 @@ const MAX_LOG_STEP: f64 = 2.5;
 /// Scales of one record that set the ranges of the logarithms and the starts of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ranges {
-    /// Duration of the record and usual time between its readings, s.
+    /// Duration of the record, s.
     pub duration: f64,
+    /// Usual time between the readings of the record, s.
     pub spacing: f64,
     /// Root mean square residual of a fit without a moment, in units of the white part.
     pub residual: f64,
@@ -135,17 +137,17 @@ impl Search<'_> {
     /// Start at the noise vectors obtained by `moved` from given vectors.
     fn start(
         &self,
-        inverse_time: f64,
+        inverse_T: f64,
         vectors: &[NoiseVector],
         moved: impl Fn(&NoiseVector, &Ranges) -> NoiseVector,
     ) -> Start {
-        (inverse_time, vectors.iter().zip(self.ranges).map(|(vector, ranges)| moved(vector, ranges)).collect())
+        (inverse_T, vectors.iter().zip(self.ranges).map(|(vector, ranges)| moved(vector, ranges)).collect())
     }
 
     /// Starts of several sizes for the moment of a kind.
-    pub fn level_starts(&self, inverse_time: f64, vectors: &[NoiseVector], moment: MomentKind) -> Vec<Start> {
+    pub fn level_starts(&self, inverse_T: f64, vectors: &[NoiseVector], moment: MomentKind) -> Vec<Start> {
         let level = |by: f64| {
-            self.start(inverse_time, vectors, |vector, ranges| {
+            self.start(inverse_T, vectors, |vector, ranges| {
                 // The effect of a moment shows within a quarter of a record.
                 let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
                 ranges.with(&NoiseVector { moment, ..*vector }, LEVEL_INDEX, log)
@@ -163,7 +165,7 @@ impl Search<'_> {
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
             let Some(point) = point else { continue };
             starts.extend(shares.map(|share| {
-                self.start(point.inverse_time, &point.vectors, |vector, ranges| {
+                self.start(point.inverse_T, &point.vectors, |vector, ranges| {
                     let time = share * ranges.duration;
                     let factor = if vector.moment == MomentKind::White { 0.5 / time } else { 0.5 * time };
                     let gusts = NoiseVector { moment: MomentKind::OrnsteinUhlenbeck, ..*vector };
@@ -176,9 +178,9 @@ impl Search<'_> {
     }
 
     /// Starts for an entry of all noise vectors: a few values over its range.
-    pub fn entry_starts(&self, inverse_time: f64, vectors: &[NoiseVector], entry: usize) -> Vec<Start> {
+    pub fn entry_starts(&self, inverse_T: f64, vectors: &[NoiseVector], entry: usize) -> Vec<Start> {
         let start = |share: f64| {
-            self.start(inverse_time, vectors, |vector, ranges| {
+            self.start(inverse_T, vectors, |vector, ranges| {
                 let [low, high] = ranges.range(vector, entry);
                 ranges.with(vector, entry, low + share * (high - low))
             })
@@ -262,7 +264,7 @@ impl Search<'_> {
                 index += 1;
             }
         }
-        (point.inverse_time + by(0), vectors)
+        (point.inverse_T + by(0), vectors)
     }
 }
 
@@ -311,7 +313,7 @@ fn reduced(information: &DMatrix<f64>, selected: &[usize]) -> Option<DMatrix<f64
     Some(pick(selected, selected) - &cross * inner.solve(&cross.transpose()))
 }
 
-/// Noise vector with the gyro error from which a search begins: σ_r/σ = 1/(e √`spacing`).
+/// Noise vector with the rate-gyro error from which a search begins: σ_r/σ = 1/(e √`spacing`).
 pub(super) fn gyro_start(ranges: &Ranges, vector: &NoiseVector) -> NoiseVector {
     ranges.with(vector, GYRO_INDEX, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

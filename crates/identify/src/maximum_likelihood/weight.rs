@@ -25,7 +25,7 @@ pub(super) struct Weight {
 
 impl Weight {
     /// Sum of squares of the whitened residual at b and b δ_r.
-    pub fn square(&self, b: f64, q: f64) -> f64 {
+    pub fn rss(&self, b: f64, q: f64) -> f64 {
         let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
         // The square is bounded below by its rounding error, which remains for a record without noise.
         let rounding = (f64::EPSILON * yy).max(f64::MIN_POSITIVE);
@@ -34,7 +34,7 @@ impl Weight {
 
     /// Variance of the compass error at b and b δ_r, rad².
     pub fn variance(&self, b: f64, q: f64) -> f64 {
-        self.tied.map_or(self.square(b, q) / self.freedom, |unit| (b * unit).powi(2))
+        self.tied.map_or(self.rss(b, q) / self.freedom, |unit| (b * unit).powi(2))
     }
 }
 

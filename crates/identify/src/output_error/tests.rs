@@ -22,18 +22,18 @@ fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64)
 #[test]
 fn recovers_ships_of_either_stability_to_rounding() {
     let initial = State { heading: 0.2, yaw_rate: -0.004 };
-    for (inverse_time, gain) in
+    for (inverse_T, K_over_T) in
         [(1.0 / 16.3, 0.1 / 16.3), (0.4, 0.03), (1e-6, 6e-3), (0.0, 6e-3), (-0.01, 5e-3), (-0.03, 6e-3)]
     {
-        let truth = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: from_deg(0.7) };
+        let truth = FirstOrder { inverse_T, K_over_T, rudder_bias: from_deg(0.7) };
         let trial = exact_record(&truth, initial, 271, 1.0);
         let response = method().identify(&[trial]).expect("noise-free").response;
         let scale = 1.0 / 271.0;
         assert!(
-            (response.inverse_T - inverse_time).abs() < 1e-7 * (inverse_time.abs() + scale),
+            (response.inverse_T - inverse_T).abs() < 1e-7 * (inverse_T.abs() + scale),
             "{response:?} for {truth:?}"
         );
-        assert_relative_eq!(response.K_over_T, gain, max_relative = 1e-6);
+        assert_relative_eq!(response.K_over_T, K_over_T, max_relative = 1e-6);
         assert_relative_eq!(response.rudder_bias, truth.rudder_bias, max_relative = 1e-5);
     }
 }
@@ -127,9 +127,9 @@ fn a_rudder_of_the_wrong_sign_is_refused() {
         let opposite = steered.rudder().iter().map(|delta| -delta).collect();
         let trial = record("sign", steered.time().to_vec(), steered.heading().to_vec(), opposite);
         let error = method().identify(&[trial]).expect_err("the rudder turns the ship to the other side");
-        let IdentifyError::NotAShip { inverse_time, gain } = error else { panic!("{error}") };
-        assert_relative_eq!(inverse_time, 1.0 / 16.3, max_relative = 0.33);
-        assert_relative_eq!(gain, -0.1 / 16.3, max_relative = 0.33);
+        let IdentifyError::NotAShip { inverse_T, K_over_T } = error else { panic!("{error}") };
+        assert_relative_eq!(inverse_T, 1.0 / 16.3, max_relative = 0.33);
+        assert_relative_eq!(K_over_T, -0.1 / 16.3, max_relative = 0.33);
     }
 }
 

@@ -45,7 +45,7 @@ impl Residuals {
             let (mut sum, mut squares) = (0.0, 0.0);
             Filters::run(record, point.shared, start, |row, filters| {
                 let residual = row.heading - filters.motion.heading;
-                let z = filters.instruments();
+                let z = filters.instrumental_variables();
                 let projected: Vector3<f64> = z.fixed_rows::<3>(0) - block.along * z.fixed_rows::<2>(3);
                 record_scores
                     .iter_mut()

@@ -70,7 +70,7 @@ impl Filters {
         }
     }
 
-    /// Runs over `record` and calls `visit` at every observed row.
+    /// Advances the filters through `record` from `start`; calls `visit` at every observed row.
     #[inline]
     pub fn run(record: &SrivcRecord, shared: SharedParameters, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
         let mut filters = Self::new(shared, start);
@@ -108,7 +108,7 @@ impl Filters {
 
     /// Instruments of this row: ∂x/∂a, F δ, F 1/s, and the two instruments of the initial state, 1 and φ₁.
     #[inline]
-    pub fn instruments(&self) -> SVector<f64, 5> {
+    pub fn instrumental_variables(&self) -> SVector<f64, 5> {
         self.with_first(self.sensitivity.heading)
     }
 
@@ -143,9 +143,11 @@ pub(super) struct InstrumentalEquations {
     pub target: Vector3<f64>,
     /// Coefficients of Z along 1 and φ₁: Z̃ = Z − P `along`ᵀ, P = [1, φ₁].
     pub along: Matrix3x2<f64>,
-    /// (PᵀP)⁻¹, PᵀX and Pᵀψ: they give the initial state for given shared unknowns.
+    /// (PᵀP)⁻¹; with the next two it gives the initial state for given shared unknowns.
     inner: Matrix2<f64>,
+    /// PᵀX.
     inner_regressors: SMatrix<f64, 2, 3>,
+    /// Pᵀψ.
     inner_target: Vector2<f64>,
 }
 
@@ -157,7 +159,7 @@ impl InstrumentalEquations {
         Filters::run(record, shared, start, |row, filters| {
             let z = match left {
                 LeftColumns::Regressors => filters.regressors(),
-                LeftColumns::Instruments => filters.instruments(),
+                LeftColumns::Instruments => filters.instrumental_variables(),
             };
             for column in 0..5 {
                 gram.column_mut(column).axpy(z[column], &z, 1.0);

@@ -119,9 +119,9 @@ impl Identifier for Srivc {
         let (solution, iterations) = self.iterate(&records, start)?;
         let SharedParameters { a, b, bias } = solution.point.shared;
         let sign = if backwards { -1.0 } else { 1.0 };
-        let inverse_time = sign * a;
+        let inverse_T = sign * a;
         if !(b > 0.0 && b.is_finite() && a.is_finite()) {
-            return Err(IdentifyError::NotAShip { inverse_time, gain: b });
+            return Err(IdentifyError::NotAShip { inverse_T, K_over_T: b });
         }
         let residuals = Residuals::new(&records, &solution.point, &solution.blocks)
             .ok_or(IdentifyError::Singular { condition: solution.condition, limit: self.settings.condition_limit })?;
@@ -137,11 +137,11 @@ impl Identifier for Srivc {
         let (uncertainty, warning) =
             crate::robust::reported_covariance(white, &robust_covariance, residuals.lag1, residuals.count);
         let mut warnings = Vec::from_iter(warning);
-        if inverse_time < 0.0 {
+        if inverse_T < 0.0 {
             warnings.push(WarningCode::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
         }
         Ok(Estimate {
-            response: FirstOrder { inverse_T: inverse_time, K_over_T: b, rudder_bias: bias / b },
+            response: FirstOrder { inverse_T, K_over_T: b, rudder_bias: bias / b },
             uncertainty,
             robust: Some(robust_covariance),
             stop: StopReason::Converged,

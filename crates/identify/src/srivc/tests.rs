@@ -1,6 +1,5 @@
 //! Properties of the method: exactness without noise, efficiency for white noise, consistency for coloured noise, and
 //! typed refusals.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};

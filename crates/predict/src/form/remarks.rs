@@ -4,7 +4,7 @@
 use document::names;
 use indexmap::IndexMap;
 use ship::Particulars;
-use trial::{Conditions, Loading, imo};
+use trial::{DeclaredConditions, Loading, imo};
 
 use super::record::TestedManoeuvre;
 use crate::imo::{TURNING_CIRCLE_35, ZIG_ZAG_10_10, ZIG_ZAG_20_20};
@@ -13,7 +13,7 @@ use crate::replay::record_file;
 /// Remarks, in order of relevance.
 pub(crate) fn remarks(
     tested: &[TestedManoeuvre],
-    declared: Option<(&str, &Conditions)>,
+    declared: Option<(&str, &DeclaredConditions)>,
     particulars: Option<Particulars>,
 ) -> Vec<String> {
     let mut remarks: Vec<String> = particulars.and_then(imo::short_ship_caution).into_iter().collect();

@@ -81,6 +81,8 @@ class Replay:
     #: Share of the measured headings inside the 90 % band.
     band_coverage_90: float
     heading_rmse_deg: float
+    #: Whether rudder or yaw rate of the record leave the range of the fitted records.
+    extrapolated: bool
     figures: Mapping[str, Figure]
 
 
@@ -94,6 +96,8 @@ class Criterion:
     unit: str
     median: float
     probability_of_passing: float
+    #: Whether the manoeuvre leaves the range of the fitted records.
+    extrapolated: bool
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -124,10 +128,9 @@ class PredictResult(Result):
             label, unit = spoken(name)
             spread = (figure.ci90[1] - figure.ci90[0]) / 3.3
             ends = [f"[{number(low, spread)}, {number(high, spread)}]" for low, high in (figure.ci50, figure.ci90)]
-            remark = "extrapolated" if figure.extrapolated else ""
-            if figure.measured is not None:
-                remark = f"measured {number(figure.measured, spread)}"
-            return [what, label, unit, number(figure.median, spread), *ends, remark]
+            remarks = [] if figure.measured is None else [f"measured {number(figure.measured, spread)}"]
+            remarks += ["extrapolated"] if figure.extrapolated else []
+            return [what, label, unit, number(figure.median, spread), *ends, ", ".join(remarks)]
 
         header = ["manoeuvre", "figure", "unit", "median", "50 %", "90 %", "remark"]
         notes = [
@@ -141,12 +144,7 @@ class PredictResult(Result):
         """One row a figure, as a table of ``"pandas"`` or ``"polars"``."""
 
         def row(what: str, name: str, figure: Figure) -> dict[str, Any]:
-            ends = {
-                "low50": figure.ci50[0],
-                "high50": figure.ci50[1],
-                "low90": figure.ci90[0],
-                "high90": figure.ci90[1],
-            }
+            ends = dict(zip(("low50", "high50", "low90", "high90"), (*figure.ci50, *figure.ci90)))
             notes = {"measured": figure.measured, "extrapolated": figure.extrapolated}
             return {"manoeuvre": what, "figure": name, "median": figure.median, **ends, **notes}
 
@@ -208,16 +206,18 @@ def predict(
     warn(warnings)
     document = json.loads(text)
 
-    def figures(entry: Mapping[str, Any]) -> dict[str, Figure]:
-        return {name: Figure._of(figure) for name, figure in entry["figures"].items()}
+    def figures(entry: Mapping[str, Any], **common: Any) -> dict[str, Figure]:
+        return {name: Figure._of({**figure, **common}) for name, figure in entry["figures"].items()}
 
-    criteria = ("criterion", "manoeuvre", "limit", "unit", "median", "probability_of_passing")
+    def replayed(entry: Mapping[str, Any]) -> Replay:
+        extrapolated = entry["extrapolated"]
+        made = figures(entry, extrapolated=extrapolated)
+        return Replay(entry["file"], entry["band_coverage_90"], entry["heading_rmse_deg"], extrapolated, made)
+
+    criteria = ("criterion", "manoeuvre", "limit", "unit", "median", "probability_of_passing", "extrapolated")
     return PredictResult(
         manoeuvres=tuple(Manoeuvre(one["kind"], figures(one), one["lost"]) for one in document["manoeuvres"]),
-        replays=tuple(
-            Replay(one["file"], one["band_coverage_90"], one["heading_rmse_deg"], figures(one))
-            for one in document["replays"]
-        ),
+        replays=tuple(map(replayed, document["replays"])),
         imo=tuple(Criterion(**{name: one[name] for name in criteria}) for one in document["imo"]),
         warnings=tuple(warnings),
         _text=text,

@@ -23,7 +23,7 @@ use crate::theme::Theme;
 /// Content of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MapCell {
-    /// Value; `None` is "not defined".
+    /// Value in the unit of the map; `None` if it is not defined.
     pub value: Option<f64>,
     /// 95 % interval of the value, written if there is room.
     pub interval: Option<[f64; 2]>,
@@ -72,9 +72,10 @@ pub struct CellMap {
 /// Minimum legible font size, points.
 const MIN_FONT_PT: f64 = 6.5;
 
-/// Minimum height of all rows of a wide figure, as a share of its width, and maximum factor by which rows grow to reach
-/// it.
+/// Minimum height of all rows of a wide figure, as a share of its width.
 const HEIGHT: f64 = 0.28;
+
+/// Maximum factor by which rows grow to reach that height.
 const SPREAD: f64 = 1.6;
 
 impl CellMap {

@@ -46,8 +46,8 @@ const MAX_ROOM: f64 = 0.6;
 /// Number of panels side by side in a narrow figure.
 const NARROW: usize = 3;
 
-/// The figure adapted to its page: on a narrow page many panels side by side become small multiples, a wide figure is
-/// wider than high.
+/// Figure adapted to its page: on a narrow page, many panels side by side become small multiples; on a wide page, the
+/// rows of a tall figure are shortened.
 fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
@@ -180,7 +180,7 @@ fn columns(stack: &Stack, theme: &Theme) -> usize {
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
-        let pairs = layer.curves().flat_map(PlotCurve::finite);
+        let pairs = layer.curves().flat_map(PlotCurve::finite_pairs);
         let values: Vec<f64> = pairs.map(|(x, y)| if is_vertical { y } else { x }).collect();
         match (&layer.kind, layer.room) {
             (LayerKind::Cloud(_), _) => {}
@@ -272,7 +272,7 @@ fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
     let (Some(column), Some((row, _))) = (grid.columns.first(), grid.rows.first()) else { return false };
     let holds = |axis: &Axis, value: f64| value >= axis.ends().0 && value <= axis.ends().1;
     let curves = stack.panels.iter().flat_map(|panel| &panel.layers).flat_map(Layer::curves);
-    let mut pairs = curves.flat_map(PlotCurve::finite);
+    let mut pairs = curves.flat_map(PlotCurve::finite_pairs);
     pairs.any(|(x, y)| !holds(&column.axis, x) || !holds(&row.axis, y))
 }
 
@@ -319,8 +319,8 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
 fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> PlotResult {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
-    let outside = layer.curve.finite().filter(|&(x, y)| chart.inside(x, y).is_none()).count();
-    let note = match (layer.curve.finite().count(), outside) {
+    let outside = layer.curve.finite_pairs().filter(|&(x, y)| chart.inside(x, y).is_none()).count();
+    let note = match (layer.curve.finite_pairs().count(), outside) {
         (0, _) => String::from("no estimate"),
         (_, 0) => return Ok(()),
         (_, count) => format!("{count} beyond the axes"),
@@ -337,10 +337,10 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
         LayerKind::Band(other, colour, opacity) => chart.band(name, [&layer.curve, other], colour.mix(*opacity))?,
         LayerKind::Record => draw_record(chart, theme, name, &layer.curve)?,
         LayerKind::Dots(colour) => {
-            chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(1.0))?;
+            chart.dots(name, layer.curve.finite_pairs(), 0.75 * theme.dot, colour.mix(1.0))?;
             return edges(chart, &layer.curve, 1.2 * theme.marker, *colour);
         }
-        LayerKind::Cloud(colour) => chart.dots(name, layer.curve.finite(), 0.75 * theme.dot, colour.mix(0.45))?,
+        LayerKind::Cloud(colour) => chart.dots(name, layer.curve.finite_pairs(), 0.75 * theme.dot, colour.mix(0.45))?,
         LayerKind::Marks(marks) => draw_marks(chart, theme, layer, marks, outside)?,
         LayerKind::Ships(colour, headings) => {
             for ((x, y), heading) in layer.curve.pairs().zip(headings).filter(|(_, heading)| heading.is_finite()) {
@@ -374,7 +374,7 @@ fn draw_labels(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
 fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotResult<usize> {
     let rect = chart.rect;
     let mut count = 0;
-    for (x, y) in curve.finite().filter_map(|(x, y)| chart.page_point(x, y)) {
+    for (x, y) in curve.finite_pairs().filter_map(|(x, y)| chart.page_point(x, y)) {
         let edge = y.clamp(rect.y, rect.bottom());
         if edge != y {
             let x = x.clamp(rect.x, rect.right());

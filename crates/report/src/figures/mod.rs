@@ -18,7 +18,7 @@ pub use panels::{
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
-pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigzagTrial};
+pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigZagPlot};
 
 use crate::drawing::Drawing;
 use crate::markup::is_markup;
@@ -34,7 +34,7 @@ pub enum Plot {
     /// Map of cells.
     Cells(CellMap),
     /// A zig-zag trial with its characteristic quantities.
-    ZigZag(ZigzagTrial),
+    ZigZag(ZigZagPlot),
 }
 
 impl Plot {
@@ -90,7 +90,7 @@ plots_of! {
     Panels Panels;
     Rows NamedRows;
     Cells CellMap;
-    ZigZag ZigzagTrial;
+    ZigZag ZigZagPlot;
 }
 
 #[cfg(test)]

@@ -259,7 +259,7 @@ impl Layer {
             LayerKind::Band(_, colour, _) => {
                 LegendSymbol::Line(Stroke { opacity: shade, ..Stroke::solid(*colour, 0.8 * theme.small_font) })
             }
-            LayerKind::Record if self.curve.finite().next().is_none() => return None,
+            LayerKind::Record if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Record => record_symbol(theme, &self.curve),
             LayerKind::Dots(colour) | LayerKind::Cloud(colour) => LegendSymbol::Dots(*colour),
             LayerKind::Marks(Marks { look, joined: Some(pen), .. }) => {
@@ -267,7 +267,7 @@ impl Layer {
             }
             LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
             LayerKind::Labels(..) => return None,
-            LayerKind::Ships(..) if self.curve.finite().next().is_none() => return None,
+            LayerKind::Ships(..) if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })
     }
@@ -284,7 +284,7 @@ pub struct PanelRow {
     pub zero: bool,
     /// Levels of dashed lines from left to right, such as the limits of white noise.
     pub levels: Vec<f64>,
-    /// Reference value.
+    /// Reference value of the results, with its band of chance.
     pub reference: Option<Reference95>,
     /// Shares of the height that are free below and above the data.
     pub room: [f64; 2],

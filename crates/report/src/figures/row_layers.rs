@@ -56,9 +56,10 @@ impl RowItem {
     }
 }
 
-/// Maximum share of the range of usual distributions by which the median of another may widen an axis, and its
-/// quartiles.
+/// Maximum multiple of the range of the usual distributions by which the median of another one may widen an axis.
 const MEDIANS: f64 = 4.0;
+
+/// Maximum multiple of that range by which the quartiles of another distribution may widen an axis.
 const BOXES: f64 = 4.0;
 
 fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
@@ -80,16 +81,19 @@ fn range_stroke(colour: RGBColor, theme: &Theme) -> Stroke {
 /// Maximum number of rows for columns above each other in a narrow figure.
 const FEW: usize = 8;
 
-/// Margins about a panel in sizes of the font of titles, and maximum share of an axis that is free for numbers.
+/// Margins about a panel, in font sizes of axis titles.
 const MARGINS: f64 = 2.0;
+
+/// Maximum share of an axis that is left free for numbers.
 const MAX_ROOM: f64 = 0.5;
 
 /// Opacity of the ground of rows.
 const GROUND: f64 = 0.1;
 
-/// Minimum and maximum height of all rows of a wide figure, as shares of its width, and maximum factor by which few
-/// rows are spread.
+/// Minimum and maximum height of all rows of a wide figure, as shares of its width.
 const HEIGHT: [f64; 2] = [0.25, 0.6];
+
+/// Maximum factor by which few rows are spread.
 const SPREAD: f64 = 1.8;
 
 /// Drawing of the columns side by side; in a narrow figure above each other, or in pairs if they have many rows. Data
@@ -312,8 +316,8 @@ fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a
     items.iter().filter_map(number).collect()
 }
 
-/// Widths of the numbers at the right end of the rows, in columns: the last number of every row in the last. Of several
-/// columns each has room for a mark.
+/// Widths of the columns of numbers at the right end of the rows, points; the last number of every row is in the last
+/// column. Each of several columns has room for a mark.
 fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
     let mut widths: Vec<f64> = Vec::new();
     for items in &column.rows {
@@ -371,7 +375,7 @@ mod tests {
     #[test]
     fn numbers_are_dark_and_have_room_for_their_marks() {
         let look = Look { colour: QUIET, ..CurveOrigin::Truth.look() };
-        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::below("", look, 1.0, None) };
+        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", look, 1.0, None) };
         let column = |items: usize| RowsColumn { rows: vec![vec![item.clone(); items]], ..RowsColumn::default() };
         let theme = Theme::screen();
         let [single, both] = [1, 2].map(|items| number_widths(&column(items), &theme));

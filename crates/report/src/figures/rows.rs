@@ -37,7 +37,7 @@ pub enum RowPlace {
     Beside,
 }
 
-/// One item of a row.
+/// Item of a row: a mark, bar, interval, limit, distribution or heading, with its name in the key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowItem {
     /// Name in the key; items of one name are listed once.
@@ -65,7 +65,7 @@ impl RowItem {
     }
 
     /// Mark on a line below the items before it in its row.
-    pub fn below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
+    pub fn mark_below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
         Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
     }
 
@@ -93,7 +93,7 @@ pub struct RowsColumn {
     pub rows: Vec<Vec<RowItem>>,
     /// `true` if the axis includes zero, with a line there.
     pub zero: bool,
-    /// Reference value.
+    /// Reference value of the results, with its band of chance.
     pub reference: Option<Reference95>,
     /// Reference values of all rows, with their names in the key.
     pub lines: Vec<(String, Pen, f64)>,

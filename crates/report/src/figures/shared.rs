@@ -57,7 +57,7 @@ impl Bars {
 /// Stroke of a recorded heading with too many points for dots; `None` for fewer points.
 fn dense(heading: &PlotCurve, theme: &Theme) -> Option<Stroke> {
     let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };
-    (heading.finite().count() > DENSE).then_some(stroke)
+    (heading.finite_pairs().count() > DENSE).then_some(stroke)
 }
 
 /// Draws a recorded heading: dots, or a wide line under the fits if there are too many points for dots.
@@ -65,8 +65,8 @@ pub(super) fn draw_record(chart: &Chart, theme: &Theme, name: Option<&str>, head
     match dense(heading, theme) {
         Some(stroke) => chart.line(name, heading.pairs(), stroke),
         None => {
-            let size = if heading.finite().count() > MANY { 1.0 } else { 1.4 };
-            chart.dots(name, heading.finite(), size * theme.dot, RECORD.mix(1.0))
+            let size = if heading.finite_pairs().count() > MANY { 1.0 } else { 1.4 };
+            chart.dots(name, heading.finite_pairs(), size * theme.dot, RECORD.mix(1.0))
         }
     }
 }
@@ -102,7 +102,7 @@ pub struct Reference95 {
 
 impl Reference95 {
     /// Reference value without a band.
-    pub fn line(value: f64) -> Self {
+    pub fn without_band(value: f64) -> Self {
         Self { value, band: [value; 2] }
     }
 

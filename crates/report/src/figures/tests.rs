@@ -7,7 +7,7 @@ use crate::curve::PlotCurve;
 use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
 use crate::{Drawing, Theme};
 
-/// Sine of `n` points, `wild` among them.
+/// Sine of `n` points with amplitude `size`; the second point is `wild`.
 fn wave(n: usize, wild: f64, size: f64) -> PlotCurve {
     let x: Vec<f64> = (0..n).map(|k| 0.5 * k as f64).collect();
     let y = x.iter().enumerate().map(|(k, x)| if k == 1 { wild } else { size * (x / 20.0).sin() });
@@ -18,7 +18,7 @@ fn methods() -> impl Iterator<Item = CurveOrigin> {
     palette::method_ids().map(|id| CurveOrigin::Method(id.to_owned()))
 }
 
-fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
+fn zigzag(n: usize, wild: f64) -> ZigZagPlot {
     let curve = wave(n, wild, 25.0);
     let mark = |t_s: f64| ZigZagMark { t_s, heading_deg: 25.0 * (t_s / 20.0).sin() };
     let some = |count: usize| if n > 0 { count } else { 0 };
@@ -27,7 +27,7 @@ fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
         OvershootMark { execute: mark(wild), extremum: mark(92.0), angle_deg: wild },
     ];
     let spans = [TimeSpan { from_s: 10.0, to_s: 31.0 }, TimeSpan { from_s: 80.0, to_s: wild }];
-    ZigzagTrial {
+    ZigZagPlot {
         heading: curve.clone(),
         heading_as_points: n > 100,
         rudder: curve.clone(),
@@ -121,7 +121,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let size = |k: usize| if k == 1 { wild } else { 0.1 * (1 + k) as f64 };
     let items = |row: usize| {
         let marks =
-            methods().map(|own| RowItem::below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
+            methods().map(|own| RowItem::mark_below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
         let look = Look { hollow: row.is_multiple_of(2), ..CurveOrigin::After.look() };
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).clipped_if_far(),
@@ -143,7 +143,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         x,
         rows: (0..n.min(5)).map(items).collect(),
         zero,
-        reference: Some(Reference95::line(1.0)),
+        reference: Some(Reference95::without_band(1.0)),
         lines: vec![("truth".into(), Pen::new(INK), 0.2)],
         included_values: vec![-0.1],
     };
@@ -262,7 +262,7 @@ fn nothing_is_nothing() {
     let theme = Theme::screen();
     check("panels", &Plot::from(Panels::default()).draw("", &theme));
     check("rows", &Plot::from(NamedRows::default()).draw("", &theme));
-    check("zigzag", &Plot::from(ZigzagTrial::default()).draw("", &theme));
+    check("zigzag", &Plot::from(ZigZagPlot::default()).draw("", &theme));
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn constant_and_undefined_curves_are_drawn() {
         let curve = PlotCurve::new(vec![2.0; 4], vec![y; 4]);
         let layer = Layer::new("record", curve.clone(), LayerKind::Record);
         check("constant", &Plot::from(Panels::over_time(vec![(PanelRow::default(), vec![layer])])).draw("", &theme));
-        let trial = ZigzagTrial { heading: curve.clone(), rudder: curve, ..ZigzagTrial::default() };
+        let trial = ZigZagPlot { heading: curve.clone(), rudder: curve, ..ZigZagPlot::default() };
         check("constant", &Plot::from(trial).draw("", &theme));
     }
 }
@@ -435,12 +435,12 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
 #[test]
 fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
     let mark = |k: usize| ZigZagMark { t_s: 0.05 * k as f64, heading_deg: 10.0 };
-    let trial = |count: usize| ZigzagTrial {
+    let trial = |count: usize| ZigZagPlot {
         heading: wave(400, 0.0, 25.0),
         rudder: wave(400, 0.0, 25.0),
         executes: (0..count).map(mark).collect(),
         overshoots: (1..count).map(|k| OvershootMark { execute: mark(k), extremum: mark(k), angle_deg: 2.0 }).collect(),
-        ..ZigzagTrial::default()
+        ..ZigZagPlot::default()
     };
     let [few, many] = [12, 3000].map(|count| Plot::from(trial(count)).draw("", &Theme::screen()).svg().to_owned());
     assert!(few.contains("overshoot") && !few.contains("too many"));

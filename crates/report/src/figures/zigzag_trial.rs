@@ -54,7 +54,8 @@ pub struct OvershootMark {
 
 /// Data of [`super::Plot::ZigZag`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ZigzagTrial {
+#[schemars(rename = "ZigzagTrial")]
+pub struct ZigZagPlot {
     /// Heading, degrees, against time, s.
     pub heading: PlotCurve,
     /// `true` if the heading is drawn as separate points (noisy or widely spaced) and not as a line.
@@ -86,12 +87,12 @@ const HEIGHT: f64 = 0.36;
 
 /// Drawing of a zig-zag trial: heading with its dimension lines above, rudder below. A trial with too many executes is
 /// drawn without its characteristic quantities, and a note states it.
-pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
+pub(super) fn zigzag_trial(data: &ZigZagPlot, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let count = data.executes.len();
     if count <= MAX_MARKED {
         return layers::annotated(&data.panels(theme), finding, theme, &|chart| data.annotate(chart, theme));
     }
-    let curves = ZigzagTrial {
+    let curves = ZigZagPlot {
         executes: Vec::new(),
         overshoots: Vec::new(),
         initial_turning: None,
@@ -103,7 +104,7 @@ pub(super) fn zigzag_trial(data: &ZigzagTrial, finding: &str, theme: &Theme) -> 
     layers::panels(&Panels { note, ..curves.panels(theme) }, finding, theme)
 }
 
-impl ZigzagTrial {
+impl ZigZagPlot {
     /// Curves and marked points, with room above and below the heading for overshoot angles and times.
     fn panels(&self, theme: &Theme) -> Panels {
         let name = format!("heading {}", symbol("ψ"));
@@ -230,7 +231,7 @@ impl Dimensions<'_> {
 
     /// Draws the horizontal dimension line of a span, with lines to the curve if a marked point is at its end; returns
     /// its middle if that is in the frame.
-    fn span(&self, data: &ZigzagTrial, span: &TimeSpan, y: f64) -> PlotResult<Option<f64>> {
+    fn span(&self, data: &ZigZagPlot, span: &TimeSpan, y: f64) -> PlotResult<Option<f64>> {
         let inside = |t: f64| self.chart.page_x(t).filter(|x| self.chart.rect.contains((*x, y)));
         let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };
         let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
@@ -243,7 +244,7 @@ impl Dimensions<'_> {
     }
 }
 
-fn explanation(data: &ZigzagTrial, values: Option<String>) -> Option<String> {
+fn explanation(data: &ZigZagPlot, values: Option<String>) -> Option<String> {
     let mut parts = Vec::new();
     if !data.overshoots.is_empty() {
         parts.push(format!("{}OS{}… overshoot angles, beyond the heading of the execute", symbol("ψ"), subscript(1)));

@@ -13,8 +13,10 @@ use body::PageHeading;
 pub(crate) use escape::escaped;
 pub use figures::FigureFiles;
 
-/// Style sheet of the page, including the interaction of tables and figures.
+/// Style sheet of the page.
 const STYLE: &str = include_str!("../../templates/report.css");
+
+/// Script of the page: the interaction of tables and figures.
 const SCRIPT: &str = include_str!("../../templates/report.js");
 
 #[derive(Template)]

@@ -47,7 +47,7 @@ impl Table {
     }
 }
 
-/// Column in LaTeX.
+/// Column of a LaTeX table.
 struct LatexColumn {
     /// Specification in the head of the tabular.
     format: String,

@@ -97,9 +97,9 @@ pub struct OperatingPoint<'a, R = f64> {
     /// Acting rudder after every transformation, without δ_r, rad.
     pub rudder: R,
     /// a = 1/T at approach speed, 1/s.
-    pub inverse_time: R,
+    pub inverse_T: R,
     /// b = K/T at approach speed, 1/s².
-    pub gain: R,
+    pub K_over_T: R,
     /// Measured channels.
     pub measured: &'a MeasuredChannels,
 }
@@ -120,13 +120,13 @@ impl<R: Real> BaseFactors<R> {
     }
 }
 
-/// Time constants of a second-order response, s.
+/// Time constants T₂ and T₃ of a second-order response.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SwayCoupling<R = f64> {
+pub struct SecondOrderTimeConstants<R = f64> {
     /// T₂, s, positive.
-    pub second_time: R,
+    pub T2: R,
     /// T₃, s.
-    pub rudder_time: R,
+    pub T3: R,
 }
 
 /// Targets of an effect in addition to its states; the equations of other targets are not evaluated.
@@ -309,7 +309,7 @@ pub trait EffectEquations<R: Real> {
     }
 
     /// Time constants of the second order; `None` except for the effect that raises the order of the response.
-    fn sway_coupling(&self, _p: &[R]) -> Option<SwayCoupling<R>> {
+    fn second_order_time_constants(&self, _p: &[R]) -> Option<SecondOrderTimeConstants<R>> {
         None
     }
 }
@@ -401,7 +401,7 @@ impl Prior {
 
     /// Prior of a shape parameter.
     #[must_use]
-    pub fn shape(self) -> Self {
+    pub fn as_shape(self) -> Self {
         Self { is_shape: true, ..self }
     }
 

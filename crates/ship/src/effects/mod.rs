@@ -25,7 +25,7 @@ mod wave_heading;
 pub use backlash::Backlash;
 pub use effect::{
     BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
-    Parameter, Prior, RecordScales, SwayCoupling,
+    Parameter, Prior, RecordScales, SecondOrderTimeConstants,
 };
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
 pub use list::{all, listed_effect, meaning};

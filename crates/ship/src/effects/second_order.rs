@@ -3,7 +3,8 @@
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, Prior, RecordScales, SwayCoupling,
+    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, Prior, RecordScales,
+    SecondOrderTimeConstants,
 };
 use estimation::number::Real;
 
@@ -34,7 +35,7 @@ impl Effect for SecondOrder {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let time = records.time;
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
-        let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
+        let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).as_shape();
         let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
         Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))
     }
@@ -54,7 +55,7 @@ impl Effect for SecondOrder {
 }
 
 impl<R: Real> EffectEquations<R> for SecondOrder {
-    fn sway_coupling(&self, p: &[R]) -> Option<SwayCoupling<R>> {
-        Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
+    fn second_order_time_constants(&self, p: &[R]) -> Option<SecondOrderTimeConstants<R>> {
+        Some(SecondOrderTimeConstants { T2: p[0], T3: p[1] })
     }
 }

@@ -124,7 +124,7 @@ impl Effect for SpeedLoss {
                 let recovery = Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
                     .within([time, 2.0 * records.duration.max(time)]);
                 let loss = Prior::normal(&MODELLED[0], 0.0, 1.0 * time);
-                Some(CandidateEffect::new(*self, [loss, recovery.shape(), Prior::fixed(Self::FREE_STREAM[1])]))
+                Some(CandidateEffect::new(*self, [loss, recovery.as_shape(), Prior::fixed(Self::FREE_STREAM[1])]))
             }
             Self::Measured { .. } => None,
             Self::Inflow { .. } => {

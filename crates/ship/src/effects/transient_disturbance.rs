@@ -122,6 +122,6 @@ impl<R: Real> EffectEquations<R> for TransientDisturbance {
             }
             Self::Lasting { edge } => (since / R::from(*edge)).tanh() + R::from(1.0),
         };
-        now.gain * 0.5 * p[0] * shape
+        now.K_over_T * 0.5 * p[0] * shape
     }
 }

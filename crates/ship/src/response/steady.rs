@@ -88,8 +88,8 @@ mod tests {
     use crate::ResponseModel;
     use crate::effects::{Effect, SecondOrder, SpeedLoss, SteeringLag, listed_effect};
 
-    fn ship(inverse_time: f64, effect: Arc<dyn Effect>, parameters: &[f64]) -> Response {
-        let mut values = vec![inverse_time, 6e-3, 0.01];
+    fn ship(inverse_T: f64, effect: Arc<dyn Effect>, parameters: &[f64]) -> Response {
+        let mut values = vec![inverse_T, 6e-3, 0.01];
         values.extend_from_slice(parameters);
         ResponseModel::new(vec![effect]).with_parameters(values)
     }
@@ -97,12 +97,12 @@ mod tests {
     /// −a r − n r³ + b (δ + δ_r) = 0, re-derived by hand; a < 0 for a course-unstable ship with an unstable loop.
     #[test]
     fn the_steady_curve_holds_its_unstable_branch() {
-        for inverse_time in [0.06, -0.02] {
-            let ship = ship(inverse_time, listed_effect("nonlinear_damping", "r³"), &[300.0]);
+        for inverse_T in [0.06, -0.02] {
+            let ship = ship(inverse_T, listed_effect("nonlinear_damping", "r³"), &[300.0]);
             for rate in [-0.02, -0.004, 0.0, 0.001, 0.01] {
-                let by_hand = (inverse_time * rate + 300.0 * rate * rate * rate) / 6e-3 - 0.01;
+                let by_hand = (inverse_T * rate + 300.0 * rate * rate * rate) / 6e-3 - 0.01;
                 let steady = ship.steady_rudder(rate).expect("within a radian");
-                assert!((steady - by_hand).abs() < 1e-9, "{inverse_time} {rate}: {steady} {by_hand}");
+                assert!((steady - by_hand).abs() < 1e-9, "{inverse_T} {rate}: {steady} {by_hand}");
             }
         }
         assert_eq!(ship(0.06, listed_effect("nonlinear_damping", "r³"), &[300.0]).steady_rudder(1.0), None);

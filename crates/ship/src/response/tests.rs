@@ -113,8 +113,8 @@ fn an_effect_acts_where_it_says() {
         heading: 0.3,
         yaw_rate: 0.01,
         rudder: 0.2,
-        inverse_time: 0.06,
-        gain: 0.006,
+        inverse_T: 0.06,
+        K_over_T: 0.006,
         measured: &measured,
     };
     for effect in effects::all() {

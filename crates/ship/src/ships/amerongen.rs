@@ -29,8 +29,8 @@ pub fn frigate() -> Ship {
 }
 
 /// Norrbin response from K (1/s), T (s) and n₃ for yaw rates in deg/s.
-fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [gain, time, n3]: [f64; 3]) -> Ship {
-    let parameters = vec![1.0 / time, gain / time, 0.0, n3 * 1f64.to_degrees().powi(2) / time];
+fn norrbin([id, name]: [&'static str; 2], particulars: Option<Particulars>, [K, T, n3]: [f64; 3]) -> Ship {
+    let parameters = vec![1.0 / T, K / T, 0.0, n3 * 1f64.to_degrees().powi(2) / T];
     Ship {
         id: id.into(),
         name: name.into(),

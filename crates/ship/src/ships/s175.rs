@@ -5,7 +5,6 @@
 //! instantaneous speed U; the rudder is positive to starboard.
 //!
 //! Source: Son and Nomoto (1982), as tabulated in the Marine Systems Simulator (Lauvdal 1994, Fossen 2022).
-#![expect(non_snake_case, reason = "each name is the symbol of the source")]
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -18,37 +17,58 @@ use crate::vessel::{Hull, MIN_SPEED_SHARE};
 /// Length and speed; the speed is taken from the linear equations in the Marine Systems Simulator.
 const PARTICULARS: Particulars = Particulars { length: 175.0, speed: 7.0 };
 
-/// m' and the added masses m_x', m_y'; I_z' + J_z', and m_y' α_y with the centre α_y' = 0.05 of m_y'.
+/// Mass m'.
 const M: f64 = 0.00792;
+
+/// Added mass in surge m_x'.
 const MX: f64 = 0.000_238;
+
+/// Added mass in sway m_y'.
 const MY: f64 = 0.007_049;
+
+/// Moment of inertia with the added one, I_z' + J_z'.
 const INERTIA: f64 = 0.000_456 + 0.000_419;
+
+/// Coupling of sway and yaw, m_y' α_y', by the centre α_y' = 0.05 of m_y'.
 const COUPLING: f64 = MY * 0.05;
 
 /// X'uu, X'vr, X'rr and X'vv.
 const X: [f64; 4] = [-0.000_422_6, -0.00311, 0.00020, -0.00386];
-/// v, r, vvv, rrr, vvr and vrr of Y' and N'.
+/// Coefficients v, r, vvv, rrr, vvr and vrr of Y'.
 const Y: [f64; 6] = [-0.0116, 0.00242, -0.109, 0.00177, 0.0214, -0.0405];
+/// Coefficients v, r, vvv, rrr, vvr and vrr of N'.
 const N: [f64; 6] = [-0.003_854_5, -0.00222, 0.001_492, -0.00229, -0.0424, 0.00156];
 
-/// Diameter of the propeller, m; wake, its growth with the inflow across, place, thrust deduction, K_T = k0 + k1 J.
+/// Diameter of the propeller, m.
 const DIAMETER: f64 = 6.533;
+/// Wake fraction w of the propeller on a straight course.
 const WAKE: f64 = 0.184;
+/// Decrease of the wake fraction with the square of v' + x_P' r', the inflow across the propeller.
 const TAU: f64 = 1.09;
+/// Position x_P' of the propeller.
 const XP: f64 = -0.526;
+/// Thrust deduction t.
 const DEDUCTION: f64 = 0.175;
+/// Coefficients k0 and k1 of K_T = k0 + k1 J.
 const THRUST: [f64; 2] = [0.527, -0.455];
 
-/// Rudder area, m², and aspect ratio; κ and ε of the rudder inflow; flow straightening of v', r', r'³ and r'² v'.
+/// Rudder area, m².
 const AREA: f64 = 33.0376;
+/// Aspect ratio of the rudder.
 const ASPECT: f64 = 1.8219;
+/// κ of the inflow to the rudder: influence of the propeller stream.
 const KAPPA: f64 = 0.631;
+/// ε of the inflow to the rudder, relative to the inflow to the propeller.
 const EPSILON: f64 = 0.921;
+/// Flow straightening of v', r', r'³ and r'² v'.
 const STRAIGHTENING: [f64; 4] = [0.088, -0.156, -0.275, 1.96];
-/// Share of F_N sin δ that is resistance; a_H, x_R' and x_H'.
+/// Share of F_N sin δ that is resistance.
 const RESISTANCE: f64 = 0.71;
+/// Share a_H of the rudder force that acts on the hull in addition.
 const AH: f64 = 0.237;
+/// Position x_R' of the rudder.
 const XR: f64 = -0.5;
+/// Position x_H' of the additional force on the hull.
 const XH: f64 = -0.48;
 
 /// S175 hull at the propeller revolutions of its steady approach.

@@ -3,7 +3,6 @@
 //! The source uses the bis system (forces over mass, lengths over L), so accelerations are in m/s². The rudder works in
 //! the propeller stream of speed c, c² = c_un u n + c_nn n². The thrust causes a small sway force and yaw moment (Y_T,
 //! N_T). The rudder of the source is positive to port; its sign is changed here. The shallow-water terms are zero.
-#![expect(non_snake_case, reason = "each name is the symbol of the source")]
 
 use std::sync::Arc;
 
@@ -20,9 +19,11 @@ const INERTIA: [f64; 3] = [1.050, 2.020, 0.1232];
 /// Coefficients 1 + X_vr, Y_ur − 1 and N_ur − x_G of the yaw rate, dimensionless in the bis system.
 const TURNING: [f64; 3] = [2.020, -0.752, -0.231];
 
-/// uu, un and nn of the thrust T, and thrust deduction; un and nn of c².
+/// Coefficients of thrust over mass uu u²/L + un u n + nn L n² (m/s²), dimensionless in the bis system.
 const THRUST: [f64; 3] = [-0.00695, -0.00063, 0.000_035_4];
+/// Thrust deduction t.
 const DEDUCTION: f64 = 0.22;
+/// Coefficients un and nn of c², the squared speed of the propeller stream.
 const STREAM: [f64; 2] = [0.605, 38.2];
 
 /// uu, vv, ccδδ and ccβδ of X.

@@ -1,7 +1,5 @@
 //! Test suite over every ship, and numbers of single ships against an independent computation.
 
-#![expect(non_snake_case, reason = "L and U, M and N are the symbols of the field")]
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 

@@ -1,5 +1,4 @@
 //! Ships from the numbers of a user: indices K and T, or particulars.
-#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use std::sync::Arc;
 

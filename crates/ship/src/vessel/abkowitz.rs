@@ -8,7 +8,6 @@
 //! coefficients as printed.
 //!
 //! Sources: Abkowitz (1964); Chislett and Strøm-Tejsen (1965).
-#![expect(non_snake_case, reason = "Xvv is a derivative of the force X; names are those of the source")]
 
 use super::{Hull, MIN_SPEED_SHARE};
 use crate::dynamics::Input;

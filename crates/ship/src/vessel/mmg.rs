@@ -11,7 +11,6 @@
 //!
 //! Source of the model: H. Yasukawa and Y. Yoshimura (2015), Introduction of MMG standard method for ship maneuvering
 //! predictions, Journal of Marine Science and Technology 20, 37–52.
-#![expect(non_snake_case, reason = "U is a speed and u its surge part, XR a force and xR a position")]
 
 mod parameters;
 
@@ -34,7 +33,7 @@ pub enum MmgError {
     NotPositive {
         /// Symbol.
         symbol: &'static str,
-        /// Value.
+        /// Rejected value.
         value: f64,
     },
     /// Inertia in sway and yaw that is not positive, given by the determinant of the prime mass matrix.
@@ -167,11 +166,11 @@ impl<R: Real> Mmg<R> {
     }
 
     /// Accelerations (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad);
-    /// `turning` is the propeller rate relative to the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
+    /// `n_ratio` is the propeller rate relative to the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
     /// δ of the straight approach.
-    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, turning: f64, disturbance: f64) -> [R; 3] {
+    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, n_ratio: f64, disturbance: f64) -> [R; 3] {
         let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
-        let revolutions = self.revolutions * turning;
+        let revolutions = self.revolutions * n_ratio;
         let rL = r * L;
         let U = u.hypot(v).at_least(MIN_SPEED_SHARE * self.approach_speed);
         let (v_, r_) = (v / U, rL / U);

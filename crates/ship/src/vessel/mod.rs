@@ -92,6 +92,6 @@ impl<H: Hull> Dynamics for H {
     /// After five reversals of a 20° rudder the heading then differs by less than 0.0001° from the heading at a far
     /// smaller step; the error comes from the kinks of an MMG hull.
     fn largest_step(&self) -> f64 {
-        self.particulars().time() / 100.0
+        self.particulars().ship_length_time() / 100.0
     }
 }

@@ -32,13 +32,13 @@ use super::prior::{HullParticulars, HullPrior, hull_prior};
 pub struct HullCoefficient {
     /// Name in files.
     pub key: &'static str,
-    /// Symbol.
+    /// Symbol in formulas and tables.
     pub symbol: &'static str,
     /// Prior mean.
     pub mean: f64,
     /// Prior standard deviation.
     pub sd: f64,
-    /// Minimum and maximum value.
+    /// Minimum and maximum valid value.
     pub ends: [f64; 2],
 }
 

@@ -80,15 +80,20 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
     }
 
     fn time_constants(&self) -> TimeConstants {
-        TimeConstants::always(self.length / self.speed / STEPS)
+        TimeConstants::at_all_times(self.length / self.speed / STEPS)
     }
 }
 
-/// Search of a steady turn: maximum number of steps, first step in L/U₀, growth factor of the step, and tolerance of
-/// the accelerations.
+/// Maximum number of steps of the search for a steady turn.
 const MAX_STEPS: usize = 60;
+
+/// First step of the search, in L/U₀.
 const FIRST_STEP: f64 = 0.5;
+
+/// Growth factor of the step.
 const STEP_GROWTH: f64 = 1.5;
+
+/// Tolerance of the accelerations in a steady turn, in units of L and U₀.
 const ACCELERATION_TOLERANCE: f64 = 1e-10;
 
 /// Maximum rudder of a steady turn, rad.

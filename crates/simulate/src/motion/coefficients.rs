@@ -66,7 +66,7 @@ impl PlanarCoefficients {
     }
 
     /// Coefficients from values in the order of [`COEFFICIENT_SYMBOLS`], clamped to their bounds.
-    pub fn from_array(values: [f64; COEFFICIENT_COUNT]) -> Self {
+    pub fn clamped_from_array(values: [f64; COEFFICIENT_COUNT]) -> Self {
         let [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d] = clamped(values, COEFFICIENT_BOUNDS);
         Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d }
     }

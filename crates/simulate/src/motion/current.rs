@@ -43,7 +43,7 @@ pub struct Current {
 /// Heading in rad, not wrapped; track north and east in m; time in s; columns of equal length, from the execute on.
 /// `None` for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current
 /// that changes within a round, and wind, are included in the result.
-pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
+pub fn estimate_current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
     let rows = time.len();
     if rows < 2 || heading.len() != rows || track.len() != rows {
         return None;
@@ -105,7 +105,7 @@ mod tests {
     fn a_uniform_current_is_found() {
         for side in [-1.0, 1.0] {
             let (time, heading, track) = turn(2.2, side, [0.4, -0.3]);
-            let estimate = current(&time, &heading, &track).expect("two rounds");
+            let estimate = estimate_current(&time, &heading, &track).expect("two rounds");
             assert!((estimate.north_m_s - 0.4).abs() < 1e-3 && (estimate.east_m_s + 0.3).abs() < 1e-3, "{estimate:?}");
             assert!((estimate.speed_m_s - 0.5).abs() < 1e-3 && estimate.north_sd_m_s.max(estimate.east_sd_m_s) < 1e-3);
             assert!((estimate.set_deg - 323.13).abs() < 0.2, "{estimate:?}");
@@ -115,8 +115,8 @@ mod tests {
     #[test]
     fn less_than_two_rounds_tell_no_current() {
         let (time, heading, track) = turn(1.9, 1.0, [0.4, -0.3]);
-        assert_eq!(current(&time, &heading, &track), None);
-        assert_eq!(current(&time[..1], &heading[..1], &track[..1]), None);
-        assert_eq!(current(&time, &heading[1..], &track), None);
+        assert_eq!(estimate_current(&time, &heading, &track), None);
+        assert_eq!(estimate_current(&time[..1], &heading[..1], &track[..1]), None);
+        assert_eq!(estimate_current(&time, &heading[1..], &track), None);
     }
 }

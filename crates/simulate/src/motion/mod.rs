@@ -11,7 +11,7 @@
 //! | a yaw response with speed and drift | [`PlanarShip`] |
 //! | the track over ground | [`dead_reckoning`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
-//! | current from two rounds | [`current`](current()) |
+//! | current from two rounds | [`estimate_current`] |
 //!
 //! Propeller revolutions are constant, as trial procedures require; engine manoeuvres are not modelled. Water is deep
 //! and at rest apart from a uniform current, which only shifts positions.
@@ -26,6 +26,6 @@ mod tests;
 
 pub use circle::{TurningCircleCharacteristics, dead_reckoning, turning_circle};
 pub use coefficients::{COEFFICIENT_COUNT, COEFFICIENT_SYMBOLS, PlanarCoefficients};
-pub use current::{Current, current};
+pub use current::{Current, estimate_current};
 pub use planar::{MotionError, Planar};
 pub use planar_ship::PlanarShip;

@@ -10,7 +10,7 @@ use super::coefficients::PlanarCoefficients;
 pub struct MotionError {
     /// Quantity: `length` or `approach speed`.
     quantity: &'static str,
-    /// Value.
+    /// Rejected value, m or m/s.
     value: f64,
 }
 
@@ -35,7 +35,8 @@ impl Planar {
                 return Err(MotionError { quantity, value });
             }
         }
-        Ok(Self { coefficients: PlanarCoefficients::from_array(coefficients.to_array()), length, approach_speed })
+        let coefficients = PlanarCoefficients::clamped_from_array(coefficients.to_array());
+        Ok(Self { coefficients, length, approach_speed })
     }
 
     /// Rates (u', v') in m/s² at surge u and sway v (m/s), yaw rate r (rad/s) and rudder (rad).

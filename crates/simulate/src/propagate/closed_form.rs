@@ -9,9 +9,10 @@ use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
 
-/// Maximum step, s, and maximum step in units of |T|, so that a course-unstable ship is stopped before its state
-/// overflows.
+/// Maximum step, s.
 const MAX_STEP_S: f64 = 60.0;
+
+/// Maximum step in units of |T|, so that a course-unstable ship is stopped before its state overflows.
 const MAX_STEP_OVER_T: f64 = 30.0;
 
 /// Tolerance, s, for equal steps: rows at k·period differ by rounding only, and 1e-12 s of yaw rate changes only the
@@ -136,7 +137,7 @@ impl Propagator for ClosedForm {
         let [step, _] = self.usual;
         let before = limits.before.min(segment.end);
         loop {
-            let next = rows.next();
+            let next = rows.next_time();
             let usual = (next - self.time - step.h).abs() < STEP_TOLERANCE_S && next <= self.time + self.longest;
             if !usual || next >= before {
                 return;

@@ -86,7 +86,7 @@ impl AwaitedHeading {
     ///
     /// The step leads from `from`, before the crossing, to `end` in `h` seconds. The yaw rate is monotone in the step,
     /// so the heading has at most one extremum, which is located when the yaw rate changes sign.
-    pub fn locate(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
+    pub fn first_crossing(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
         let before = (0.0, self.excess(from.heading));
         let mut after = (h, self.excess(end.heading));
         if after.1 < 0.0 && self.side * from.yaw_rate > 0.0 && self.side * end.yaw_rate < 0.0 {

@@ -21,7 +21,7 @@ use report::Theme;
 use report::number::counted;
 
 use crate::completed::{self, completed};
-use crate::documents::{BENCH, folder_for};
+use crate::documents::{BENCH_FILE, folder_for};
 use crate::options::{CommonOptions, FigureOptions};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
@@ -45,11 +45,11 @@ pub struct BenchRequest {
     pub scenarios: Vec<PathBuf>,
     /// Methods to compare [default: all]
     #[arg(long = "method", value_name = "LABEL", hide_possible_values = true,
-        value_parser = completed(StringValueParser::new(), completed::scenario_methods))]
+        value_parser = completed(StringValueParser::new(), completed::scenario_method_names))]
     pub methods: Vec<String>,
     /// Tasks to score [default: all]
     #[arg(long = "task", value_name = "ID", hide_possible_values = true,
-        value_parser = completed(task, completed::tasks))]
+        value_parser = completed(task, completed::task_names))]
     pub tasks: Vec<BenchTask>,
     /// Names of the scenarios to run [default: all]
     #[arg(long = "set", value_name = "NAME")]
@@ -144,7 +144,7 @@ fn are_known<'a>(
 pub fn run(request: &BenchRequest, common: &CommonOptions) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| PathBuf::from("results/bench"));
-    let folder = ResultFolder::make(&folder_for(BENCH, &place)?)?;
+    let folder = ResultFolder::make(&folder_for(BENCH_FILE, &place)?)?;
     let results =
         run_benchmark(request, common.seed, &Vec::new(), Some(&folder), &Terminal::new("trials", common.quiet))?;
     write_results(&results, &folder, &theme, common)
@@ -181,12 +181,12 @@ pub fn skipped_record_line(record: &Skipped) -> String {
 /// Writes all files, removes files of an earlier run that this one does not write, and returns the text of the
 /// document.
 fn write_files(results: &BenchDocument, folder: &ResultFolder, theme: &Theme) -> Result<String, Failure> {
-    let text = results.json().on("describe", &folder.path().join(BENCH))?;
-    folder.write_synced(BENCH, &text)?;
+    let text = results.to_json().on("describe", &folder.path().join(BENCH_FILE))?;
+    folder.write_synced(BENCH_FILE, &text)?;
     folder.write(ROWS, bench_tables::answer_rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     let pages = folder.subfolder(METHODS)?;
-    pages.remove_all(|name| name.ends_with(".md"))?;
+    pages.remove_matching(|name| name.ends_with(".md"))?;
     for method in &results.methods {
         pages.write(&format!("{}.md", slug(method)), bench_page::method_page(results, method).to_markdown())?;
     }

@@ -9,14 +9,14 @@ use report::Theme;
 
 use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
-use crate::documents::{self, FIT, draws, folder_for_records};
+use crate::documents::{self, FIT_FILE, draws, folder_for_records};
 use crate::options::{CommonOptions, FitRequest};
 use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{curve_tables, fit_page};
 use crate::work::earlier_trials::EarlierModel;
-use crate::work::fit::{fit, methods};
+use crate::work::fit::{fit, labelled_methods};
 
 /// Identifies the records, prints the table, writes `fit.json`, the curves, figures, `report.md` and `report.html`.
 ///
@@ -25,7 +25,7 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
     if request.each {
         return fit_each::run(request, common);
     }
-    let methods = methods(&request.methods, common.seed)?;
+    let methods = labelled_methods(&request.methods, common.seed)?;
     let priors = EarlierModel::from_files(&request.priors)?;
     let mut warnings = Warnings::default();
     let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
@@ -33,11 +33,11 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
     warnings.extend(repetition_warnings(&trials, &validation));
     let theme = request.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit"));
-    let place = folder_for_records(FIT, &place, &trials)?;
+    let place = folder_for_records(FIT_FILE, &place, &trials)?;
     let fit = fit([&trials, &validation], &methods, &priors, common.quiet, warnings)?.with_predicted_circle();
     let folder = ResultFolder::make(&place)?;
     let curves = fit.curves();
-    let text = documents::write_with_curves(&folder, FIT, &fit.document, &curves)?;
+    let text = documents::write_with_curves(&folder, FIT_FILE, &fit.document, &curves)?;
     if request.draws.draws_file {
         let answers = fit.document.ships.iter().map(|(method, ship)| (method.as_str(), ship));
         draws::write_estimates(&folder, answers, request.draws.draws, common.seed.unwrap_or_default())?;
@@ -58,7 +58,8 @@ pub fn write_results(
 ) -> Result<(), Failure> {
     curve_tables::write_replays(curves, folder)?;
     write_page(folder, fit_page::page(document, curves), theme)?;
-    let notes = format!("{}\nresults: {}", fit_page::below_table(document, curves), folder.path().join(FIT).display());
+    let notes =
+        format!("{}\nresults: {}", fit_page::below_table(document, curves), folder.path().join(FIT_FILE).display());
     let verdict = fit_page::verdict(document).map_or_else(String::new, |sentences| format!("{sentences}\n\n"));
     let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
     let table = fit_page::answers(document, curves);

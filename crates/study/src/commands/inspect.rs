@@ -13,7 +13,7 @@ use crate::documents;
 use crate::documents::inspect::{ChannelEntry, InspectAnswer};
 use crate::documents::log::LogEntry;
 use crate::options::CommonOptions;
-use crate::records::{open, source};
+use crate::records::{open, warning_source};
 use crate::screen::{self, CommandOutput};
 use campaign::failure::Failure;
 
@@ -38,7 +38,7 @@ pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failu
     let mut warnings = Warnings::default();
     let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
     let file = display_path(&request.log);
-    warnings.extend(source(file).attach_to(doubts(log.clone())));
+    warnings.extend(warning_source(file).attach_to(doubts(log.clone())));
     let answer = InspectAnswer::from_log(file, &log, warnings.ranked());
     let LogEntry { file, rows, duration_s, .. } = &answer.log;
     let before = format!("{file}: {rows} rows, {} s\n", fixed(*duration_s, 1));

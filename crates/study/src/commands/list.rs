@@ -122,7 +122,7 @@ fn ships() -> Table {
     table
 }
 
-/// Keys of a trial whose name begins with `part`, listed without that part.
+/// Keys of a scenario whose name begins with `part`, listed without that part.
 fn keys_below(part: &str) -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "unit", "default", "meaning"]));
     for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {

@@ -10,7 +10,7 @@ use report::Theme;
 use trial::file::display_path;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, PREDICT, draws, folder_for};
+use crate::documents::{self, PREDICT_FILE, draws, folder_for};
 use crate::options::{CommonOptions, PredictRequest};
 use crate::records::read_for_replay;
 use crate::screen::{self, CommandOutput};
@@ -35,7 +35,7 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
              with --replay",
         ));
     }
-    let place = folder_for(PREDICT, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
+    let place = folder_for(PREDICT_FILE, &common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let mut warnings = Warnings::default();
     let mut read = |paths: &[PathBuf]| -> Result<Vec<StoredModel>, Failure> {
         paths.iter().map(|path| StoredModel::from_file(path, request, &mut warnings)).collect()
@@ -52,7 +52,7 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
     let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
-    let text = documents::write_with_curves(&folder, PREDICT, &predicted, &predicted.curves())?;
+    let text = documents::write_with_curves(&folder, PREDICT_FILE, &predicted, &predicted.curves())?;
     if request.draws_file {
         draws::write_ships(&folder, &predicted)?;
     }
@@ -74,7 +74,7 @@ pub fn write_results(
         folder.write(&format!("{stem}.csv"), table)?;
     }
     write_page(folder, predict_page::page(predicted), theme)?;
-    let mut notes = format!("\nresults: {}", folder.path().join(PREDICT).display());
+    let mut notes = format!("\nresults: {}", folder.path().join(PREDICT_FILE).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
         folder.write(FORM, predict_form::page(form, remarks).to_markdown())?;
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());

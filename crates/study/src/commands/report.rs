@@ -13,7 +13,7 @@ use clap::Args;
 
 use super::{bench, fit, predict, trace};
 use crate::documents::curves::TraceCurves;
-use crate::documents::{BENCH, CURVES, FIT, PREDICT, TRACE, read_document, read_json};
+use crate::documents::{BENCH_FILE, CURVES_FILE, FIT_FILE, PREDICT_FILE, TRACE_FILE, read_document, read_json};
 use crate::options::{CommonOptions, Format, StudyFigureOptions};
 use crate::screen;
 use crate::terminal::Terminal;
@@ -79,26 +79,26 @@ fn report(stored: &Path, request: &ReportRequest, common: &CommonOptions) -> Res
     let theme = || style.style.theme();
     let has = |name: &str| stored.join(name).is_file();
     match () {
-        () if has(TRACE) => {
+        () if has(TRACE_FILE) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text) = read_document(&stored.join(TRACE), document::trace::SCHEMA)?;
+            let (document, text) = read_document(&stored.join(TRACE_FILE), document::trace::SCHEMA)?;
             let curves = TraceCurves::read(&document, stored)?;
             trace::write_results(&folder, &document, &curves, &text, Some(&theme), common, &[])?
         }
-        () if has(FIT) => {
+        () if has(FIT_FILE) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text) = read_document(&stored.join(FIT), document::fit::SCHEMA)?;
-            let (curves, _) = read_json(&stored.join(CURVES), "fit")?;
+            let (document, text) = read_document(&stored.join(FIT_FILE), document::fit::SCHEMA)?;
+            let (curves, _) = read_json(&stored.join(CURVES_FILE), "fit")?;
             fit::write_results(&folder, &document, &curves, &text, Some(&theme), common)?
         }
-        () if has(PREDICT) => {
+        () if has(PREDICT_FILE) => {
             let (folder, theme) = (held()?, theme()?);
-            let (document, text) = read_document(&stored.join(PREDICT), ::predict::document::SCHEMA)?;
-            let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES), "predict")?.0);
+            let (document, text) = read_document(&stored.join(PREDICT_FILE), ::predict::document::SCHEMA)?;
+            let predicted = PredictDocument::with_curves(document, read_json(&stored.join(CURVES_FILE), "predict")?.0);
             predict::write_results(&folder, &predicted, &text, Some(&theme), common, &predicted.warnings)?
         }
-        () if has(BENCH) => {
-            bench::write_results(&read_json(&stored.join(BENCH), "bench")?.0, &held()?, &theme()?, common)?
+        () if has(BENCH_FILE) => {
+            bench::write_results(&read_json(&stored.join(BENCH_FILE), "bench")?.0, &held()?, &theme()?, common)?
         }
         () => rebuild(stored, style, common)?,
     }

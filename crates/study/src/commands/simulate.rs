@@ -17,7 +17,7 @@ use crate::documents::answers::SimulateAnswer;
 use crate::options::{CommonOptions, SimulateRequest};
 use crate::progress;
 use crate::views::page_files::run_all;
-use crate::work::simulate::{RecordFiles, records, tasks};
+use crate::work::simulate::{RecordFiles, simulate_record_files, tasks};
 
 /// Simulates the requested trials and writes them, with the true values of each.
 ///
@@ -78,7 +78,7 @@ const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials 
 
 /// Writes the records of a trial, the sidecar of each record that needs one, and the true values.
 fn write(scenario: &Scenario, task: TrialId, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    for RecordFiles { name, table, sidecar, truth } in records(scenario, task, name)? {
+    for RecordFiles { name, table, sidecar, truth } in simulate_record_files(scenario, task, name)? {
         folder.write(&format!("{name}.csv"), table)?;
         if let Some(sidecar) = sidecar {
             folder.write(&format!("{name}.trial.toml"), sidecar)?;

@@ -8,7 +8,7 @@ use document::{Warning, Warnings};
 use report::Theme;
 
 use crate::documents::curves::TraceCurves;
-use crate::documents::{TRACE, draws, folder_for_records};
+use crate::documents::{TRACE_FILE, draws, folder_for_records};
 use crate::interrupt;
 use crate::options::{CommonOptions, TraceRequest};
 use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
@@ -17,7 +17,7 @@ use crate::views::page_files::write_page;
 use crate::views::trace_page;
 use crate::work::earlier_trials::EarlierModel;
 use crate::work::steady;
-use crate::work::trace::{STOPPED, settings, trace, withhold_channels};
+use crate::work::trace::{STOPPED_MESSAGE, settings, trace, withhold_channels};
 
 /// Analyses the records, prints the results, writes `trace.json`, the curves, `report.md`, `report.html` and figures.
 ///
@@ -30,7 +30,7 @@ pub fn run(request: &TraceRequest, common: &CommonOptions) -> Result<(), Failure
     let validation = withhold_channels(request, read_for_replay(&request.validate, &request.reading, &mut warnings)?);
     warnings.extend(repetition_warnings(&trials, &validation));
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace"));
-    let place = folder_for_records(TRACE, &place, &trials)?;
+    let place = folder_for_records(TRACE_FILE, &place, &trials)?;
     let traced = trace([&trials, &validation], &settings, &priors, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = traced.write(&folder)?;
@@ -39,7 +39,7 @@ pub fn run(request: &TraceRequest, common: &CommonOptions) -> Result<(), Failure
         draws::write_estimates(&folder, answer, request.draws.draws, common.seed.unwrap_or_default())?;
     }
     write_results(&folder, &traced.document, &traced.curves()?, &text, theme.as_ref(), common, &warnings.ranked())?;
-    if interrupt::is_stop_requested() { Err(Failure::interrupted(STOPPED)) } else { Ok(()) }
+    if interrupt::is_stop_requested() { Err(Failure::interrupted(STOPPED_MESSAGE)) } else { Ok(()) }
 }
 
 /// Writes the figures and the page of a trace into a folder and prints its results; `text` is that of `trace.json`.
@@ -55,7 +55,7 @@ pub fn write_results(
     warnings: &[Warning],
 ) -> Result<(), Failure> {
     write_page(folder, trace_page::page(document, curves, steady::steady_turns(&document.ship).as_ref()), theme)?;
-    let notes = format!("\nresults: {}", folder.path().join(TRACE).display());
+    let notes = format!("\nresults: {}", folder.path().join(TRACE_FILE).display());
     let [before, behind] = trace_page::around_table(document);
     let table = trace_page::all_errors(document);
     let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };

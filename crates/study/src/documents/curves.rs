@@ -13,7 +13,7 @@ use campaign::scenario::name::slug;
 use document::trace::{RecordEntry, StairEntry, TraceDocument};
 use identify::replay::Replay;
 use ship::angle::{from_deg, to_deg};
-use trial::{Channel, Columns as Channels, Origin, Trial};
+use trial::{Channel, Columns as Channels, RecordOrigin, Trial};
 
 use super::columns::CsvColumns;
 use crate::records::unique_names;
@@ -140,7 +140,7 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     };
     let replays = [replay(MODELS[0])?, replay(MODELS[1])?];
     let band = rows(String::from("after_half_width95_deg"));
-    let origin = Origin::Measured { file: entry.file.clone(), sha256: String::new() };
+    let origin = RecordOrigin::Measured { file: entry.file.clone(), sha256: String::new() };
     let trial = Trial::new(&entry.name, origin, Channels { time, channels, unknown: Vec::new() }).ok()?;
     Some(TracedRecord { trial, replays, band, innovations: None })
 }

@@ -8,7 +8,7 @@ use crate::screen;
 /// Failure of a command.
 #[derive(Serialize, schemars::JsonSchema)]
 pub struct ErrorDocument<'a> {
-    /// Version of the document.
+    /// Name and version of the document, such as `error/1`.
     pub schema: &'static str,
     /// Entry of the failure.
     pub error: ErrorEntry<'a>,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use campaign::stored_figures::Replays;
 use report::PlotCurve;
-use report::figures::ZigzagTrial;
+use report::figures::ZigZagPlot;
 use serde::{Deserialize, Serialize};
 
 /// `curves.json`: the curves of the figures of a fit, from which they can be plotted again.
@@ -32,7 +32,7 @@ pub struct FitRecord {
     /// `true` if the record was held out for validation.
     pub validation: bool,
     /// The zig-zag with its characteristic points.
-    pub zigzag: Option<ZigzagTrial>,
+    pub zigzag: Option<ZigZagPlot>,
     /// Record and replays of all methods.
     pub replays: Replays,
     /// Rudder angle.

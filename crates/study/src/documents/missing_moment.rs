@@ -42,7 +42,7 @@ pub struct ChannelCurve {
 }
 
 impl MissingMomentCurves {
-    /// Curves of an entry, from the tables of [`over_time`] and [`over_channels`].
+    /// Curves of an entry, from the tables of [`table_over_time`] and [`table_over_channels`].
     pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
         let column_of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
         let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
@@ -86,7 +86,7 @@ fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
 }
 
 /// Table over time: the moment with its band, the explanation, and every recorded channel.
-pub fn over_time(missing: &MissingMoment) -> String {
+pub fn table_over_time(missing: &MissingMoment) -> String {
     let mut columns = CsvColumns::default();
     columns.push(TIME, missing.time.clone());
     columns.push(MOMENT, degrees(&missing.moment));
@@ -106,7 +106,7 @@ pub fn over_time(missing: &MissingMoment) -> String {
 /// Table over the channels: the values of each channel, the moment, the half width of its band, and the explanation.
 ///
 /// A fitted curve has mean zero over the rows; here the mean of the moment is added.
-pub fn over_channels(missing: &MissingMoment) -> String {
+pub fn table_over_channels(missing: &MissingMoment) -> String {
     let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
     let mut columns = CsvColumns::default();
     for panel in &missing.panels {

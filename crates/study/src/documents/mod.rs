@@ -33,19 +33,19 @@ use crate::screen;
 use answers::{CommandAnswer, Versioned};
 
 /// Name of the file with a fit.
-pub const FIT: &str = "fit.json";
+pub const FIT_FILE: &str = "fit.json";
 
 /// Name of the file with a trace.
-pub const TRACE: &str = "trace.json";
+pub const TRACE_FILE: &str = "trace.json";
 
 /// Name of the file with a prediction.
-pub const PREDICT: &str = "predict.json";
+pub const PREDICT_FILE: &str = "predict.json";
 
 /// Name of the file with a benchmark.
-pub const BENCH: &str = "bench.json";
+pub const BENCH_FILE: &str = "bench.json";
 
 /// Name of the file with the curves of the figures of a fit or a prediction.
-pub const CURVES: &str = "curves.json";
+pub const CURVES_FILE: &str = "curves.json";
 
 /// Text of a document. Fails if a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
@@ -54,8 +54,8 @@ pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
 
 /// Folder for the results of a command. Fails if it holds results of another command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
-    let other_documents = [FIT, TRACE, PREDICT, BENCH, MANIFEST_FILE].into_iter().filter(|name| *name != document);
-    match other_documents.map(|name| place.join(name)).find(|path| path.is_file()) {
+    let documents = [FIT_FILE, TRACE_FILE, PREDICT_FILE, BENCH_FILE, MANIFEST_FILE].into_iter();
+    match documents.filter(|name| *name != document).map(|name| place.join(name)).find(|path| path.is_file()) {
         Some(path) => Err(Failure::input(format!(
             "{} is the result of another command; give another folder with --out",
             path.display()
@@ -122,7 +122,7 @@ pub fn write_with_curves(
     curves: &impl Serialize,
 ) -> Result<String, Failure> {
     let text = write_document(folder, name, document)?;
-    folder.write(CURVES, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES))?)?;
+    folder.write(CURVES_FILE, serde_json::to_string(curves).on("describe", &folder.path().join(CURVES_FILE))?)?;
     Ok(text)
 }
 

@@ -5,8 +5,10 @@ use document::{Warning, WarningCode};
 use report::number::{fixed, significant};
 use ship::vessel::prime::departure_cause;
 
-/// Maximum number of coefficients named in a conflict, and their minimum shift in standard deviations.
+/// Maximum number of coefficients named in a conflict.
 const MAX_NAMED: usize = 3;
+
+/// Minimum shift of a coefficient named in a conflict, in standard deviations.
 const MIN_SHIFT_SD: f64 = 1.0;
 
 /// Message if no hull near the models can be fitted.

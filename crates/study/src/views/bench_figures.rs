@@ -1,6 +1,6 @@
 //! Figures of a benchmark: scores relative to those of the reference method.
 
-use campaign::benchmark::board::{Board, LeaderboardRow};
+use campaign::benchmark::board::{Leaderboard, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
@@ -36,7 +36,7 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
             capital(field),
             results.reference
         );
-        let boards: Vec<&Board> = results.boards.iter().filter(|board| board.field == field).collect();
+        let boards: Vec<&Leaderboard> = results.boards.iter().filter(|board| board.field == field).collect();
         let finding = format!("{}: {}", capital(field), finding(&boards, &results.reference));
         Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), finding, caption, ratios(results, field)?))
     };
@@ -67,12 +67,12 @@ fn axis_title(task: BenchTask) -> &'static str {
 }
 
 /// Finding: the methods that are significantly better than the reference, with the tasks.
-fn finding(boards: &[&Board], reference: &str) -> String {
+fn finding(boards: &[&Leaderboard], reference: &str) -> String {
     let is_better = |standing: &&LeaderboardRow| {
         let upper = standing.ratio.and_then(|ratio| ratio.ci95?[1]);
         upper.is_some_and(|upper| upper < 1.0)
     };
-    let of_task = |board: &&Board| {
+    let of_task = |board: &&Leaderboard| {
         let better = board.standings.iter().filter(is_better).map(|standing| standing.method.as_str());
         let better = better.collect::<Vec<_>>().join(" and ");
         (!better.is_empty()).then(|| format!("{better} ({})", axis_title(board.task)))
@@ -90,7 +90,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     if rivals.is_empty() || !has_ratios {
         return None;
     }
-    let column = |board: &&Board| {
+    let column = |board: &&Leaderboard| {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
             let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
@@ -113,7 +113,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
                 format!("score ratio, {} (n = {})", axis_title(board.task), board.cases),
                 TickRule::Logarithmic,
             ),
-            reference: Some(Reference95::line(1.0)),
+            reference: Some(Reference95::without_band(1.0)),
             rows: rivals.iter().map(row).collect(),
             ..RowsColumn::default()
         }

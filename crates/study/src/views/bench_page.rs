@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use askama::Template;
-use campaign::benchmark::board::Board;
+use campaign::benchmark::board::Leaderboard;
 use campaign::benchmark::cases::BenchCase;
 use campaign::benchmark::{BenchDocument, BenchTask};
 
@@ -21,7 +21,7 @@ use super::bench_tables as tables;
 struct BenchPage<'a> {
     results: &'a BenchDocument,
     /// Leaderboards by task.
-    tasks: Vec<(BenchTask, Vec<&'a Board>)>,
+    tasks: Vec<(BenchTask, Vec<&'a Leaderboard>)>,
     /// Text of the leaderboards of the single score over all tasks.
     overall_boards: String,
     methods: Vec<(&'a String, &'a String)>,
@@ -55,8 +55,8 @@ pub fn page(results: &BenchDocument) -> Page {
 }
 
 /// Number of cases and records of a leaderboard.
-fn counted(board: &Board) -> String {
-    let Board { cases, clusters, .. } = *board;
+fn counted(board: &Leaderboard) -> String {
+    let Leaderboard { cases, clusters, .. } = *board;
     let few = if (clusters as u64) < MIN_INTERVAL_VALUES { ", too few for an interval" } else { "" };
     match cases == clusters {
         true => format!("{}{few}", report::number::counted(cases as u64, "record")),

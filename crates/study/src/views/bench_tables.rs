@@ -1,6 +1,6 @@
 //! Tables of a benchmark: leaderboards, sets, and single answers.
 
-use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
+use campaign::benchmark::board::{Leaderboard, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
 use campaign::benchmark::cases::{BenchCase, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
 use campaign::benchmark::{BenchDocument, BenchTask};
@@ -73,7 +73,7 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
 }
 
 /// Table of one leaderboard.
-pub fn leaderboard(results: &BenchDocument, board: &Board) -> Table {
+pub fn leaderboard(results: &BenchDocument, board: &Leaderboard) -> Table {
     let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));

@@ -79,7 +79,7 @@ impl ErrorMeasure {
 
     /// Nominal coverage, 95 %, for the two panels of coverage; `None` for every other panel.
     fn reference(self, panel: usize) -> Option<Reference95> {
-        (self == Self::Coverage && panel < 2).then(|| Reference95::line(95.0))
+        (self == Self::Coverage && panel < 2).then(|| Reference95::without_band(95.0))
     }
 }
 
@@ -102,14 +102,14 @@ const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 /// Methods that can be compared in some cells, and whether their errors are relative to the first-order response
 /// nearest to the ship. `None` if K and T are not the same quantities in all cells and the study is about predictions,
 /// or if intervals would be of a response that is not the truth. A trace is compared with the ship's own K and T.
-pub fn comparable<'a>(
+pub fn comparable_methods<'a>(
     design: &Design,
     measure: ErrorMeasure,
     mut cells: impl Iterator<Item = &'a CellFacts>,
 ) -> Option<(Vec<usize>, bool)> {
     let is_trace = |method: &usize| design.methods[*method].id == TRACE;
     let of_indices = measure.is_of_errors() || measure == ErrorMeasure::Coverage;
-    let is_nearest = of_indices && cells.any(|cell| cell.is_nearest);
+    let is_nearest = of_indices && cells.any(|cell| cell.is_compared_with_nearest);
     let mut methods: Vec<usize> = (0..design.methods.len()).collect();
     let to_nearest = is_nearest && !methods.iter().all(is_trace);
     if is_nearest && design.predicts || to_nearest && measure == ErrorMeasure::Coverage {
@@ -142,8 +142,8 @@ impl<'a> ComparedMethods<'a> {
     /// The comparison; `None` if no method can be compared.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
-        let (mut methods, to_nearest) = comparable(design, measure, cells())?;
-        let is_bounded = cells().all(|cell| cell.bound_percent2.is_some() && !cell.is_nearest);
+        let (mut methods, to_nearest) = comparable_methods(design, measure, cells())?;
+        let is_bounded = cells().all(|cell| cell.bound_percent2.is_some() && !cell.is_compared_with_nearest);
         if measure == ErrorMeasure::OverBound && !is_bounded {
             return None;
         }
@@ -304,8 +304,9 @@ pub fn over_axes(
 struct ChartGroup {
     /// Labels of the other axes.
     name: String,
-    /// Labels of the other axes, numbers with the names of their axes.
+    /// The same for a heading: a number is preceded by the name of its axis.
     head: String,
+    /// Indices of the cells.
     cells: Vec<usize>,
 }
 
@@ -384,7 +385,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             let dot = |&method: &usize| {
                 let (value, interval) = compared.drawn(cell, method, panel)?;
                 let origin = curve_origin(design, method);
-                Some(RowItem::below(origin.label(), origin.look(), value, interval))
+                Some(RowItem::mark_below(origin.label(), origin.look(), value, interval))
             };
             let bound = compared.shown_bound(cell, panel);
             let bound = bound.map(|bound| RowItem::new(CurveOrigin::Bound.label(), RowKind::Limit(bound)));

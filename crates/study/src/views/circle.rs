@@ -81,7 +81,7 @@ impl CircleTrack {
     pub fn layers(&self) -> Vec<Layer> {
         let Self { name, track, figures, pen } = self;
         let mut layers = vec![Layer::line(name.as_str(), track.clone(), *pen)];
-        let side = track.finite().map(|(east, _)| east).max_by(|one, other| one.abs().total_cmp(&other.abs()));
+        let side = track.finite_pairs().map(|(east, _)| east).max_by(|one, other| one.abs().total_cmp(&other.abs()));
         let side = side.unwrap_or_default().signum();
         let measures = Pen { dash: DOTTED, ..*pen }.width(0.8);
         let mut line = |from: [f64; 2], to: [f64; 2]| {
@@ -94,7 +94,7 @@ impl CircleTrack {
             line([0.0, advance], [side * transfer.unwrap_or_default(), advance]);
         }
         let opposite = diameter.and_then(|diameter| {
-            let north = track.finite().find(|(east, _)| side * east >= diameter * NEARLY)?.1;
+            let north = track.finite_pairs().find(|(east, _)| side * east >= diameter * NEARLY)?.1;
             Some((side * diameter, north))
         });
         if let Some((east, north)) = opposite {

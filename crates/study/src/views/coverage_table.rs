@@ -29,7 +29,8 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// Coverage of all characteristics of a cell and a method: mean, minimum and maximum of their shares.
+/// Table by cell and method over all characteristics: mean, minimum and maximum share inside the 90 % interval, median
+/// relative width and interval score.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let columns = ["inside 90 %", "lowest", "highest", "width of the value", "interval score of the value"];
     let head = head(design).counts(["figures", "trials"]).numbers(columns).unit("%");
@@ -46,7 +47,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
         for value in [PredictionSummary::width, PredictionSummary::score] {
-            let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * line.relative(value(line))).collect();
+            let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * line.relative_to_truth(value(line))).collect();
             cells.push(optional(median(&mut relative), 1));
         }
         cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));

@@ -55,7 +55,7 @@ pub fn replay_table(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
 
 /// Writes the replays of every record of a fit.
 pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Failure> {
-    folder.remove_all(|name| name.starts_with("replay-") && name.ends_with(".csv"))?;
+    folder.remove_matching(|name| name.starts_with("replay-") && name.ends_with(".csv"))?;
     curves.records.iter().enumerate().try_for_each(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
         folder.write(&format!("replay{suffix}.csv"), replay_table(&record.replays, Some(&record.rudder)))

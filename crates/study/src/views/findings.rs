@@ -1,6 +1,6 @@
 //! Findings of figures, one sentence each, from the plotted data.
 
-use report::figures::{CellMap, LayerKind, NamedRows, Outline, Panels, Plot, RowKind, ZigzagTrial};
+use report::figures::{CellMap, LayerKind, NamedRows, Outline, Panels, Plot, RowKind, ZigZagPlot};
 use report::number::{fixed, significant};
 
 /// A value and its name.
@@ -131,7 +131,7 @@ fn of_map(data: &CellMap) -> String {
 }
 
 /// Finding of a figure of a zig-zag: its overshoots.
-pub fn zigzag_finding(data: &ZigzagTrial) -> String {
+pub fn zigzag_finding(data: &ZigZagPlot) -> String {
     let angles: Vec<String> = data.overshoots.iter().map(|swing| format!("{}°", fixed(swing.angle_deg, 1))).collect();
     match &angles[..] {
         [] => String::from("The trial has no overshoot"),

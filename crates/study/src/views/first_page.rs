@@ -1,11 +1,11 @@
-//! Ship, day and draughts of the trials, below the title of a report.
+//! Ship, date and draughts of the trials, below the title of a report.
 
 use document::TrialParticularsEntry;
 use report::number::{MISSING, significant};
 use report::{Table, TableHead};
 
 /// One row for every record, or one for all records with equal particulars; `None` if no particular is known.
-pub fn particulars<'a>(records: impl Iterator<Item = (String, &'a TrialParticularsEntry)>) -> Option<Table> {
+pub fn particulars_table<'a>(records: impl Iterator<Item = (String, &'a TrialParticularsEntry)>) -> Option<Table> {
     let records: Vec<(String, &TrialParticularsEntry)> = records.collect();
     let (_, first) = records.first()?;
     if records.iter().all(|(_, entry)| entry.is_empty()) {
@@ -61,7 +61,7 @@ mod tests {
         let declared = TrialParticularsEntry { ship_name: Some("Kempf".into()), ..TrialParticularsEntry::default() };
         let unknown = TrialParticularsEntry::default();
         let rows = |entries: [&TrialParticularsEntry; 2]| {
-            let table = particulars(entries.map(|entry| (String::from("run"), entry)).into_iter());
+            let table = particulars_table(entries.map(|entry| (String::from("run"), entry)).into_iter());
             table.map(|table| table.to_text().lines().count())
         };
         assert_eq!([rows([&declared; 2]), rows([&unknown; 2])], [Some(3), None]);

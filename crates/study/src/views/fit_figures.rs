@@ -93,7 +93,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
     let replay = replay.or_else(|| replays.replays.first());
     let extent = replays
         .record
-        .finite()
+        .finite_pairs()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, y)| [low.min(y), high.max(y)]);
     let finding = replay.and_then(|replay| {
         let (rms, swing) = (significant(replay.rms_deg?, 2), significant(extent[1] - extent[0], 2));

@@ -24,7 +24,7 @@ const FIRST: &str = "replays";
 #[template(path = "fit.md", escape = "none")]
 struct FitPage<'a> {
     title: String,
-    /// Ship, day and draughts of the trials.
+    /// Ship, date and draughts of the trials.
     particulars: Option<Table>,
     verdict: Option<String>,
     /// Paragraphs below the verdict.
@@ -35,8 +35,9 @@ struct FitPage<'a> {
     circles: Vec<String>,
     /// The form of MSC/Circ.1053: declared entries, tests, and remarks.
     form: Option<(Vec<(&'a str, Table)>, Table)>,
-    /// Remarks of the form, and the mark of its headings.
+    /// Remarks of the form.
     form_remarks: &'a [String],
+    /// Mark before the headings of the form.
     mark: &'static str,
     answers: Table,
     /// K and T of every record alone, if there are several.
@@ -69,7 +70,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let named = names.zip(document.trials.iter().map(|trial| &trial.trial_particulars));
     let page = FitPage {
         title: title(document, curves),
-        particulars: first_page::particulars(named),
+        particulars: first_page::particulars_table(named),
         verdict: document.verdict.as_ref().and_then(|_| lines.next()),
         lines: lines.filter(|line| !line.is_empty()).collect(),
         criteria: has_form.then(|| predict_form::criteria(&document.form)),
@@ -82,7 +83,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
         warnings: document.verdict_warnings().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
         scales: scales(document),
-        remarks: document.notes().map(ToString::to_string).collect(),
+        remarks: document.other_warnings().map(ToString::to_string).collect(),
         figures,
     };
     Page::new(page.render(), page.figures)

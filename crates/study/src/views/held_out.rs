@@ -4,7 +4,7 @@ use ::trace::replay_errors::HORIZONS_S;
 use campaign::curves::angle_curve_deg;
 use document::names;
 use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
-use predict::prediction::TOLERANCE;
+use predict::prediction::RANGE_FACTOR;
 use report::figures::{
     AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack, TickRule,
 };
@@ -58,7 +58,7 @@ pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> O
     let fitted = document.ship.validity_range.rudder_rad;
     let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
     let beyond = all.zip(&document.trace.error.validation).filter_map(|((entry, record), errors)| {
-        let is_beyond = record.trial.largest_rudder() > TOLERANCE * fitted;
+        let is_beyond = record.trial.largest_rudder() > RANGE_FACTOR * fitted;
         Some((&entry.name, errors.after.band_coverage_95.filter(|_| is_beyond)?, errors.after.heading_rmse_deg))
     });
     let mut beyond: Vec<(&String, f64, f64)> = beyond.collect();
@@ -77,8 +77,7 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
     let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
         let row = |errors: &BeforeAfter| -> Vec<RowItem> {
             let pairs = [(CurveOrigin::Before, &errors.before), (CurveOrigin::After, &errors.after)];
-            let mark =
-                |(origin, all): (CurveOrigin, _)| Some(RowItem::below(origin.label(), origin.look(), pick(all)?, None));
+            let mark = |(of, all): (CurveOrigin, _)| Some(RowItem::mark_below(of.label(), of.look(), pick(all)?, None));
             pairs.into_iter().filter_map(mark).collect()
         };
         let rows = judged.iter().map(|record| row(record.errors)).collect();

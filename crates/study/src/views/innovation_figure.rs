@@ -13,9 +13,10 @@ use statrs::distribution::{Beta, ContinuousCDF, Normal};
 /// Minimum number of innovations for the figure.
 const MIN_INNOVATIONS: usize = 8;
 
-/// Maximum number of ranks between the ends at which the band is plotted, and number of ranks at either end that are
-/// all plotted.
+/// Maximum number of ranks between the ends at which the band is plotted.
 const MAX_DRAWN_RANKS: usize = 150;
+
+/// Number of ranks at either end that are all plotted.
 const END_RANKS: usize = 20;
 
 /// Distribution of the i-th smallest of n uniform numbers (David and Nagaraja 2003, 2.1).

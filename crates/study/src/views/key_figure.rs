@@ -12,13 +12,13 @@ use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
-use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit};
+use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
 /// Remark on the simulated trials behind every value, with their number if it is the same for all.
-pub fn trials(design: &Design) -> String {
+pub fn trials_remark(design: &Design) -> String {
     let counts = distinct(design.cells.iter().map(|cell| cell.trials.end - cell.trials.start));
     let [count] = counts[..] else { return String::from(SIMULATED) };
     let each = if design.cells.len() > 1 { " each" } else { "" };
@@ -29,7 +29,7 @@ pub fn trials(design: &Design) -> String {
 pub const SIMULATED: &str = "Simulated trials.";
 
 /// Begins the remarks under a figure with the remark on its trials; a zig-zag has it in its caption.
-pub fn remark_on_trials(figure: &mut PageFigure, remark: &str) {
+pub fn add_trials_remark(figure: &mut PageFigure, remark: &str) {
     match figure.plot.note() {
         Some(note) => *note = Some([Some(remark), note.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ")),
         None => figure.caption += &format!(" {remark}"),
@@ -61,7 +61,7 @@ fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
     if names.len() < 2 {
         return layers;
     }
-    let end = |layer: &Layer| layer.curve.finite().last().map_or(f64::INFINITY, |(_, y)| y);
+    let end = |layer: &Layer| layer.curve.finite_pairs().last().map_or(f64::INFINITY, |(_, y)| y);
     layers.sort_by(|a, b| end(a).total_cmp(&end(b)));
     let middle = layers.len().saturating_sub(1) / 2;
     for (number, layer) in layers.iter_mut().enumerate() {
@@ -99,7 +99,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
         keep_t(stack);
         let names = stack.panels.iter().flat_map(|panel| &panel.layers).filter_map(|layer| layer.name.clone());
         let quiet_names = distinct(names.filter(|name| is_quiet(Some(name), about)));
-        let unit = stack.rows.first().map_or_else(String::new, |row| unit(&row.y.title));
+        let unit = stack.rows.first().map_or_else(String::new, |row| unit_suffix(&row.y.title));
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
@@ -125,8 +125,8 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
 fn shown_over_bound(layers: &[Layer]) -> Option<String> {
     let bound = layers.iter().find(|layer| layer.name.as_deref() == Some(CurveOrigin::Bound.label()))?;
     let marks = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Marks(_)));
-    let ratio = |(x, y): (f64, f64)| bound.curve.finite().find(|(at, _)| *at == x).map(|(_, bound)| y / bound);
-    let ratios = || marks.clone().flat_map(|layer| layer.curve.finite()).filter_map(ratio);
+    let ratio = |(x, y): (f64, f64)| bound.curve.finite_pairs().find(|(at, _)| *at == x).map(|(_, bound)| y / bound);
+    let ratios = || marks.clone().flat_map(|layer| layer.curve.finite_pairs()).filter_map(ratio);
     let [least, most] = [ratios().reduce(f64::min)?, ratios().reduce(f64::max)?].map(|ratio| significant(ratio, 2));
     Some(if least == most { format!("{least}×") } else { format!("{least}–{most}×") })
 }
@@ -147,7 +147,7 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
         if !matches!(layer.kind, LayerKind::Marks(_)) {
             continue;
         }
-        let curve: Vec<(f64, f64)> = layer.curve.finite().collect();
+        let curve: Vec<(f64, f64)> = layer.curve.finite_pairs().collect();
         let before = written.len();
         for (place, &(x, y)) in curve.iter().enumerate().filter(|(_, (x, _))| points.contains(x)) {
             let text = (x, format!("{}{unit}", significant(y, 2)));
@@ -278,7 +278,7 @@ mod tests {
 
     #[test]
     fn other_methods_share_a_line_below_those_the_figure_is_about() {
-        let item = |id: &str, value: f64| RowItem::below(method(id).0, method(id).1, value, None);
+        let item = |id: &str, value: f64| RowItem::mark_below(method(id).0, method(id).1, value, None);
         let items = [("srivc", 2.0), ("output-error", 1.0), ("least-squares", 3.0), ("maximum-likelihood", 1.0)];
         let column = |title: &str| RowsColumn {
             x: AxisSpec::decimal(title),
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn rows_that_a_figure_is_about_have_their_value_beside_them() {
         let (name, look) = method("output-error");
-        let row = |value: f64| vec![RowItem::below(name.as_str(), look, value, None)];
+        let row = |value: f64| vec![RowItem::mark_below(name.as_str(), look, value, None)];
         let column = RowsColumn {
             x: AxisSpec::decimal("error of T [%]"),
             rows: vec![row(1.25), row(2.0)],

@@ -29,7 +29,7 @@ pub fn is_of_k(title: &str) -> bool {
 }
 
 /// Unit of the values of an axis as it follows a number: per cent or degrees, else none.
-pub fn unit(title: &str) -> String {
+pub fn unit_suffix(title: &str) -> String {
     let units = [("[%]", " %"), ("[°]", "°")];
     units.iter().find(|(end, _)| title.ends_with(end)).map_or_else(String::new, |(_, unit)| (*unit).to_owned())
 }
@@ -56,7 +56,7 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
             // Two digits, at most hundredths.
             let short = |value: f64| if value.abs() < 0.1 { fixed(value, 2) } else { significant(value, 2) };
             let [low, median, high] = [quantiles[0], quantiles[2], quantiles[4]].map(short);
-            item.number = Some(format!("{median}{} ({low} to {high})", unit(&column.x.title)));
+            item.number = Some(format!("{median}{} ({low} to {high})", unit_suffix(&column.x.title)));
         }
     }
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
@@ -105,7 +105,7 @@ fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
 
 /// Pales the rows that are not highlighted, and writes the values of all highlighted methods.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_bound: bool) {
-    let unit = unit(&column.x.title);
+    let unit = unit_suffix(&column.x.title);
     for (row, name) in column.rows.iter_mut().zip(names) {
         let is_pale = is_pale(name, about);
         let limit = row.iter().find_map(|item| if let RowKind::Limit(limit) = item.kind { Some(limit) } else { None });

@@ -60,7 +60,7 @@ pub struct OvershootError {
 }
 
 /// Errors of the overshoots of both replays, of held-out or of fitted records.
-pub fn errors(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
+pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
     let judged = || all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
     [0, 1].map(|model| {
         let distance = |overshoot: &ReplayedOvershoot| Some((overshoot.replayed[model]? - overshoot.measured).abs());
@@ -105,7 +105,7 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
         (off, missing, error.measured)
     };
-    let [(before, no_before, count), (after, no_after, _)] = errors(all, held_out > 0).map(error_words);
+    let [(before, no_before, count), (after, no_after, _)] = errors_before_after(all, held_out > 0).map(error_words);
     let of_records = match held_out {
         0 => String::new(),
         records => format!(" of {} that were not fitted", counted(records as u64, "record")),

@@ -29,7 +29,7 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
         draw(folder, &page, theme)?;
     }
     let markdown = page.to_markdown();
-    let browser = html::page(&markdown, &page.folded(), &|stem| FigureFiles::written(folder.path(), stem));
+    let browser = html::page(&markdown, &page.folded_titles(), &|stem| FigureFiles::written(folder.path(), stem));
     folder.write(REPORT, markdown)?;
     folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
 }
@@ -44,7 +44,7 @@ fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
     let has = |stem: &str, kind: &str| folder.path().join(stem).with_extension(kind).is_file();
     let is_old = |stem: &&str| has(stem, "svg") && page.figures().iter().all(|figure| figure.stem != *stem);
     let old: Vec<&str> = images.filter(is_old).collect();
-    folder.remove_all(|name| {
+    folder.remove_matching(|name| {
         let stem = name.strip_suffix(".png").or_else(|| name.strip_suffix(".svg"));
         stem.is_some_and(|stem| old.contains(&stem))
     })

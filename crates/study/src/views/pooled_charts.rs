@@ -13,7 +13,7 @@ use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
-use super::charts::{ErrorMeasure, comparable, curve_origin, rms_title};
+use super::charts::{ErrorMeasure, comparable_methods, curve_origin, rms_title};
 
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
@@ -29,7 +29,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
         return Vec::new();
     }
     let map_of = |(measure, panel, stem): (ErrorMeasure, usize, &str)| {
-        let (methods, to_nearest) = comparable(design, measure, design.cells.iter())?;
+        let (methods, to_nearest) = comparable_methods(design, measure, design.cells.iter())?;
         let title = match measure {
             ErrorMeasure::Rms => rms_title(stem, to_nearest),
             _ => String::from("median error of an unseen heading [°]"),
@@ -101,7 +101,7 @@ const REACH: f64 = 2.2;
 const FAR: f64 = 3.0;
 
 /// Clouds of errors in the cells whose detail was requested, and whether there is a bound.
-pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
+pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
         let covariance_bound = design.cells[detail.cell].bound_percent2;
         let bound = covariance_bound.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
@@ -157,7 +157,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)
 pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
-    if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
+    if !is_named || design.cells.iter().all(|cell| !cell.is_compared_with_nearest) || !summary.tracing.is_empty() {
         return None;
     }
     let names = distinct(design.cells.iter().map(|cell| cell.labels[last].as_str()));
@@ -175,7 +175,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
                 let first = answer(cells[0], panel)?;
                 let ratio = answer(cells[row], panel)?.times(1.0 / first.value);
                 let origin = CurveOrigin::Series { label: label.clone(), number };
-                Some(RowItem::below(origin.label(), origin.look(), ratio.value, ratio.ci95))
+                Some(RowItem::mark_below(origin.label(), origin.look(), ratio.value, ratio.ci95))
             };
             series.iter().enumerate().filter_map(dot).collect()
         };
@@ -258,7 +258,7 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRo
     let names = rows.iter().map(|(name, _)| name.clone());
     let names = several.then(|| String::from(ALL_CELLS_ROW)).into_iter().chain(names).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside_share();
-    let width = |line: &PredictionSummary| 100.0 * line.relative(line.width());
+    let width = |line: &PredictionSummary| 100.0 * line.relative_to_truth(line.width());
     (!summary.predictions.is_empty()).then(|| NamedRows {
         names,
         columns: vec![

@@ -127,7 +127,7 @@ fn first_figures(prediction: &Prediction) -> String {
 }
 
 /// Heading error of a replay; of more than one round also the error of the mean yaw rate, which adds up to it.
-pub fn heading_error(replayed: &RecordReplay) -> String {
+pub fn heading_error_phrase(replayed: &RecordReplay) -> String {
     let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
     let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
     let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
@@ -145,7 +145,7 @@ pub fn heading_error(replayed: &RecordReplay) -> String {
 /// Finding: coverage of the band and heading error of a replayed record.
 fn inside(replayed: &RecordReplay) -> String {
     let share = fixed(100.0 * replayed.band_coverage_90, 0);
-    format!("The 90 % band holds {share} % of the headings; most probable ship: {}", heading_error(replayed))
+    format!("The 90 % band holds {share} % of the headings; most probable ship: {}", heading_error_phrase(replayed))
 }
 
 /// Tactical diameter of a recorded turn and of its prediction; without it, the heading error.

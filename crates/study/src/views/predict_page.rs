@@ -97,7 +97,7 @@ fn coverage(replayed: &RecordReplay) -> String {
     let mut sentence = format!(
         "{} % of the headings are inside the 90 % band; {}",
         fixed(100.0 * replayed.band_coverage_90, 0),
-        predict_figures::heading_error(replayed)
+        predict_figures::heading_error_phrase(replayed)
     );
     if let Some(current) = replayed.current {
         let doubt = current.north_sd_m_s.hypot(current.east_sd_m_s);

@@ -139,7 +139,7 @@ fn write_table(folder: &ResultFolder, name: &str, table: Option<Table>) -> Resul
 
 /// `summary.tex`: the methods over all cells, and each against the reference method on the same trials.
 fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
-    let overall = tables::for_paper(summary, stored).to_latex();
+    let overall = tables::overall_for_paper(summary, stored).to_latex();
     match summary.pairs.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
         true => overall,
         false => format!("{overall}\n{}", tables::pairs_for_paper(summary, stored).to_latex()),
@@ -164,7 +164,7 @@ fn write_csv<T: Sync>(
     lines: &[T],
     table: impl Fn(&[T]) -> Table + Sync,
 ) -> Result<(), Failure> {
-    let mut file = folder.create(name)?;
+    let mut file = folder.create_temporary(name)?;
     let path = folder.path().join(name);
     let head = table(&[]).to_csv();
     file.write_all(head.as_bytes()).on("write", &path)?;

@@ -69,16 +69,16 @@ pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::work::every_scale::term;
+    use crate::work::every_scale::compared_term;
 
     #[test]
     fn every_term_has_its_word_and_the_sentence_begins_with_what_does_not_scale() {
         let quantity = |value: f64, sd: f64| Some(Quantity::new(value, Some(sd)));
         let joint = Quantity::new(1.0, Some(0.01));
         let terms = vec![
-            term(["K′", "1"], joint, vec![quantity(1.0, 0.01), quantity(1.02, 0.01)]),
-            term(["n₃/T′", "1/rad²"], joint, vec![quantity(1.0, 0.01), quantity(1.5, 0.01)]),
-            term(["δ_r", "deg"], joint, vec![quantity(1.0, 0.5), None]),
+            compared_term(["K′", "1"], joint, vec![quantity(1.0, 0.01), quantity(1.02, 0.01)]),
+            compared_term(["n₃/T′", "1/rad²"], joint, vec![quantity(1.0, 0.01), quantity(1.5, 0.01)]),
+            compared_term(["δ_r", "deg"], joint, vec![quantity(1.0, 0.5), None]),
         ];
         let model = ComparedModel { model: "traced".into(), terms };
         assert_eq!(scaling_terms_sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r is undecided");

@@ -82,14 +82,14 @@ pub fn chosen_figures(
             let mut key = PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot);
             if !design.is_measured() {
                 let is_counted = matches!(place, FigurePlace::Chart | FigurePlace::AllTrials);
-                let remark = if is_counted { key_figure::trials(design) } else { key_figure::SIMULATED.to_owned() };
-                key_figure::remark_on_trials(&mut key, &remark);
+                let remark = if is_counted { key_figure::trials_remark(design) } else { key_figure::SIMULATED.into() };
+                key_figure::add_trials_remark(&mut key, &remark);
             }
             (FigurePlace::Key, key)
         })
     });
     for (_, figure) in figures.iter_mut().filter(|_| !design.is_measured()) {
-        key_figure::remark_on_trials(figure, key_figure::SIMULATED);
+        key_figure::add_trials_remark(figure, key_figure::SIMULATED);
     }
     let named = output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
     for name in named.into_iter().flatten().filter(|name| !stems.contains(name)) {
@@ -249,7 +249,7 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         let (stem, place) = (stem_of("violins", &name(cell)), here(&name(cell)));
         figures.push(under_its_finding(stem, format!("{caption}{place}"), data));
     }
-    for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
+    for (cell, is_bounded, data) in pooled_charts::error_clouds(design, summary) {
         let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four \
             robust standard deviations are drawn at that distance)";
         // If trials have separate bounds, there is no common one.
@@ -302,7 +302,7 @@ fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Ite
 
 /// Root mean square of a curve of angles, degrees.
 fn rms(curve: &PlotCurve) -> String {
-    let (square, rows) = curve.finite().fold((0.0, 0.0), |(square, rows), (_, y)| (square + y * y, rows + 1.0));
+    let (square, rows) = curve.finite_pairs().fold((0.0, 0.0), |(square, rows), (_, y)| (square + y * y, rows + 1.0));
     format!("{}° (rms)", significant(f64::sqrt(square / rows), 2))
 }
 
@@ -310,7 +310,7 @@ fn rms(curve: &PlotCurve) -> String {
 fn accelerations(data: &DerivativeCurves) -> String {
     let largest = |curve: &MotionCurves| {
         let name = curve.name.clone().unwrap_or_else(|| curve.origin.label().to_owned());
-        Some((name, curve.yaw_acceleration.finite().map(|(_, y)| y.abs()).reduce(f64::max)?))
+        Some((name, curve.yaw_acceleration.finite_pairs().map(|(_, y)| y.abs()).reduce(f64::max)?))
     };
     capital(&findings::range("largest yaw acceleration [°/s²]", data.curves.iter().filter_map(largest)))
 }

@@ -1,6 +1,6 @@
 //! Tables of results for the screen, `report.md` and other programs.
 
-use campaign::stored_figures::Reference;
+use campaign::stored_figures::ReferenceIndices;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
@@ -9,7 +9,7 @@ use campaign::scenario::{MethodName, TRACE};
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
 use campaign::store::StoredStudy;
-use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Performance, Summary};
+use campaign::summary::{IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
 use document::method::MethodEntry;
 
 /// Table of a showcase: the methods, and below them the true and the published values.
@@ -18,7 +18,7 @@ pub fn showcase(showcase: &Showcase) -> Table {
     let mut table = super::method_table::table(&entries, &[]);
     let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
     for (name, reference) in references {
-        if let Some(Reference { k_per_s, t_s }) = reference {
+        if let Some(ReferenceIndices { k_per_s, t_s }) = reference {
             let (k, t) = (number::significant(k_per_s, 4), number::significant(t_s, 4));
             table.push([name, &k, MISSING, &t]);
         }
@@ -136,7 +136,7 @@ fn brief(record: &Performance) -> Vec<String> {
 
 /// Reference of the errors of K and T as text. A trace is compared with the ship's own K and T.
 pub fn relative_to(design: &Design) -> &'static str {
-    let is_nearest = |cell: &CellFacts| cell.is_nearest;
+    let is_nearest = |cell: &CellFacts| cell.is_compared_with_nearest;
     match () {
         () if design.methods.iter().all(|method| method.id == TRACE) => TRUTH,
         () if design.cells.iter().all(is_nearest) => "the nearest first-order response",
@@ -181,7 +181,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
 }
 
 /// Table of [`overall`] with caption and label for a paper: `summary.tex`.
-pub fn for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
+pub fn overall_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let scope = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
@@ -221,7 +221,7 @@ pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
 }
 
 /// Every method against the reference on the same trials: `pairs.csv`.
-pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
+pub fn pairs(lines: &[ReferenceComparison], reference: &MethodName, design: &Design) -> Table {
     let mut head = head(design).texts(["reference"]).counts(["trials"]);
     for index in ["K", "T"] {
         for (figure, unit) in [("rms difference", "%"), ("rms ratio", ""), ("closer", "%")] {

@@ -172,7 +172,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
             let look = Look { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
             let share = share(rule);
             let number = Some(format!("{} %", significant(share.value, 2)));
-            RowItem { number, ..RowItem::below(*kind, look, share.value, share.ci95) }
+            RowItem { number, ..RowItem::mark_below(*kind, look, share.value, share.ci95) }
         };
         let row = |variant: &&str| rules.iter().zip(&parts).filter(|(_, (_, of))| of == variant).map(item).collect();
         RowsColumn { x: AxisSpec::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
@@ -188,7 +188,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
     }
 }
 
-/// Minimum expected likelihood ratio that is plotted.
+/// Minimum expected 2 ln Λ, of the truth against the nearest first-order response, that is plotted.
 const MIN_RATIO: f64 = 1.0;
 
 /// Number of points of a theoretical curve.
@@ -232,11 +232,12 @@ fn shares(
 /// Maximum number of named kinds of trial, and of series in a figure.
 const MAX_SERIES: usize = 6;
 
-/// Number of ranges per decade of the expected ratio if there are many kinds of trial.
+/// Number of ranges per decade of the expected 2 ln Λ if there are many kinds of trial.
 const RANGES_PER_DECADE: f64 = 3.0;
 
-/// Power over the expected likelihood ratio, for cells with one missing effect: each by its name if they are few, else
-/// pooled over ranges of that ratio. `None` if every effect is named in every trial.
+/// Power over the expected 2 ln Λ of the truth against the nearest first-order response, for cells with one missing
+/// effect: each by its name if they are few, else pooled over ranges of 2 ln Λ. `None` if every effect is named in
+/// every trial.
 pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
         line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)

@@ -28,7 +28,7 @@ use crate::documents::missing_moment::MissingMomentCurves;
 const LINE: f64 = 1.06;
 
 /// Figures of every fitted record with the models before and after.
-pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
+pub fn record_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let fitted = document.records.iter().zip(&curves.records).enumerate().filter(|(_, (entry, _))| !entry.held_out);
     let figure = |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &BeforeAfter)| {
@@ -42,7 +42,7 @@ pub fn records(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure
 }
 
 /// Figures of the innovations of every fitted record.
-pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
+pub fn innovation_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let figure = |(number, record): (usize, &TracedRecord)| {
         innovation_figure::figure(
@@ -55,7 +55,7 @@ pub fn innovations(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFi
 }
 
 /// Figures of the moment that the base lacks on every fitted record.
-pub fn moments(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
+pub fn moment_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let figure = |(entry, tables): (&MissingMomentEntry, _)| {
         let number = stems.iter().position(|name| *name == entry.record).unwrap_or(0);
@@ -128,14 +128,14 @@ fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
     over_time(heading, rudder, models_over_time(record, Some(rms)))
 }
 
-/// Root mean squares of the heading errors of some records, before and after, degrees.
+/// Root mean square heading errors over some records, deg: of the base, and of the structure average.
 pub fn rms<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> [f64; 2] {
     let count = all.clone().count() as f64;
     let models: [fn(&BeforeAfter) -> &ErrorsEntry; 2] = [|errors| &errors.before, |errors| &errors.after];
     models.map(|model| (all.clone().map(|errors| model(errors).heading_rmse_deg.powi(2)).sum::<f64>() / count).sqrt())
 }
 
-/// Ratio of the heading errors of some records, after to before.
+/// Ratio of the root mean square heading errors over some records: structure average to base.
 pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
     let [before, after] = rms(all);
     after / before

@@ -106,7 +106,7 @@ fn noise(document: &TraceDocument) -> String {
     let [least, most] = [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)].map(|x| significant(x, 2));
     let white = if least == most { least } else { format!("{least} to {most}") };
     let largest = all.iter().max_by(|a, b| a.heading_sd_deg.total_cmp(&b.heading_sd_deg));
-    let beside = largest.map(tables::coloured).unwrap_or_default();
+    let beside = largest.map(tables::coloured_noise_phrases).unwrap_or_default();
     let beside = beside.iter().map(|noise_term| format!(", {noise_term}")).collect::<String>();
     let holds = match all.iter().all(|noise_entry| noise_entry.is_adequate) {
         true => "this explains the remaining error",
@@ -142,7 +142,7 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
 struct TracePage<'a> {
     document: &'a TraceDocument,
     title: String,
-    /// Ship, day and draughts of the fitted trials.
+    /// Ship, date and draughts of the fitted trials.
     particulars: Option<Table>,
     /// Physics of the effects of the staircase, a sentence each.
     physics: Vec<String>,
@@ -169,7 +169,7 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
     let page = TracePage {
         document,
         title: title(document, curves),
-        particulars: first_page::particulars(named),
+        particulars: first_page::particulars_table(named),
         physics: physics(document),
         glance: glance(document, &overshoots),
         limits: limits(document, curves),
@@ -194,7 +194,7 @@ fn placed(
     turns: Option<&(Vec<SteadyCurve>, ValidityRange)>,
 ) -> PlacedFigures<&'static str> {
     let mut placed = PlacedFigures::default();
-    let mut records = figures::records(document, curves).into_iter();
+    let mut records = figures::record_figures(document, curves).into_iter();
     let hero = trace_key_figure::figure(document, curves);
     match staircase::figure(document, curves) {
         Some(stairs) => placed.put("first", [stairs]),
@@ -208,8 +208,8 @@ fn placed(
     placed.put("records", held_out::error_figure(document).into_iter().chain(records));
     placed.put("evidence", [figures::evidence(document)]);
     placed.put("prior odds", prior_odds::figure(document));
-    placed.put("innovations", figures::innovations(document, curves));
-    placed.put("moments", figures::moments(document, curves));
+    placed.put("innovations", figures::innovation_figures(document, curves));
+    placed.put("moments", figures::moment_figures(document, curves));
     placed.put("further", turns.map(|(curves, seen)| {
         let caption = "Steady yaw rate of the model against rudder, an unstable branch dashed; thin: ships that fit \
             the records as well; grey: the \
@@ -242,7 +242,8 @@ fn physics(document: &TraceDocument) -> Vec<String> {
     distinct(ids).into_iter().filter_map(sentence).collect()
 }
 
-/// Errors of the heading and of the overshoots without and with the effects, on fitted and on held-out records.
+/// Table of root mean square heading errors and median overshoot errors without and with the effects, on fitted and
+/// held-out records.
 fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let head =
         TableHead::default().texts(["records"]).numbers(["heading error by K and T", "with effects"]).unit("deg");
@@ -251,7 +252,7 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
     for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
         let headings = figures::rms(errors.iter());
-        let overshoots = overshoots::errors(all, held_out).map(|error| error.median_deg);
+        let overshoots = overshoots::errors_before_after(all, held_out).map(|error| error.median_deg);
         let numbers = headings.map(Some).into_iter().chain(overshoots);
         let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));
         table.push(std::iter::once(format!("{} {used}", errors.len())).chain(numbers));

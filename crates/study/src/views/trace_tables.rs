@@ -112,7 +112,7 @@ pub fn restarted_heading_error(errors: &ErrorsEntry, window_s: f64) -> Option<f6
     *errors.horizon_rmse_deg.get(&format!("{window_s:.0}"))?
 }
 
-/// Interval as text, with three significant digits if both ends are below 10⁻³.
+/// Interval as text, with three significant digits if both ends are below 10⁻³ in absolute value.
 fn interval(ends: Option<[f64; 2]>) -> String {
     match ends {
         Some([lo, hi]) if lo.abs().max(hi.abs()) < 1e-3 => format!("[{}, {}]", significant(lo, 3), significant(hi, 3)),
@@ -227,7 +227,7 @@ pub fn noise(document: &TraceDocument) -> Table {
     for noise in &document.trace.noise {
         let name =
             document.records.iter().find(|entry| entry.file == noise.file).map_or(&noise.file, |entry| &entry.name);
-        let beside = coloured(noise);
+        let beside = coloured_noise_phrases(noise);
         let times: Vec<String> = noise.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
         table.push([
             names::record(name),
@@ -240,7 +240,7 @@ pub fn noise(document: &TraceDocument) -> Table {
 }
 
 /// Correlated parts of the noise of a record, a phrase each: yaw moment, heading error, waves.
-pub fn coloured(noise: &RecordNoiseEntry) -> Vec<String> {
+pub fn coloured_noise_phrases(noise: &RecordNoiseEntry) -> Vec<String> {
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
     let size = two(noise.moment_sd_rudder_deg);
     let moment = match noise.moment {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use campaign::earlier_trials::earlier_hulls;
 use campaign::failure::Failure;
-use campaign::identified_ship::RecordFacts;
+use campaign::identified_ship::MethodIndependentResults;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::identified_hull::matrix_rows;
 use document::{IdentifiedShip, Warning, WarningCode};
@@ -141,13 +141,13 @@ pub struct ShipAfterTrials {
 /// Ship whose hulls are updated with the models.
 ///
 /// Fails if she has no hull, if a record would count twice, or if the models have no hull of the same form.
-pub fn with_earlier(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
+pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
     let before_trials = earlier_hulls(ship).map_err(|error| Failure::in_file(shown, error))?;
     let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
     for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
-        let Some((after, check)) = hull::combined(hull_before, &earlier) else { continue };
+        let Some((after, check)) = hull::merge_with_earlier(hull_before, &earlier) else { continue };
         let values = stored.coefficients.iter_mut().zip(after.values.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = matrix_rows(&after.covariance);
@@ -189,7 +189,7 @@ fn earlier_trials(
 }
 
 /// Document entry of the models used with the records; `None` without models.
-pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
+pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &MethodIndependentResults) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let is_member = |form: &str| facts.hulls.iter().any(|hull| hull.form == form);
     Some(earlier_trials(models, &ship, &facts.checks, is_member))

@@ -54,13 +54,13 @@ fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> 
     let compared = |&(symbol, unit, dimension, quantity_of): &(&str, &str, [i32; 2], Of)| {
         let prime = |estimate: &Estimate| quantity_of(estimate).scaled(ship.prime_factor(dimension));
         let at_scales = by_scale.iter().map(|estimate| estimate.as_ref().map(prime)).collect();
-        term([symbol, unit], prime(joint), at_scales)
+        compared_term([symbol, unit], prime(joint), at_scales)
     };
     all.iter().map(compared).collect()
 }
 
-/// Term of this symbol and unit: its joint value, its values at each scale, and whether it scales.
-pub fn term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Quantity>>) -> ComparedTerm {
+/// Comparison of a term between scales, from its symbol and unit, joint value and value at each scale.
+pub fn compared_term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<Option<Quantity>>) -> ComparedTerm {
     let values: Vec<Quantity> =
         at_scales.iter().map(|value| value.unwrap_or(Quantity::without_uncertainty(f64::NAN))).collect();
     let (difference_sd, verdict) = compare_scales(&values);

@@ -12,7 +12,7 @@ use identify::plausibility::unusual_ship;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry, verdict};
 use indicatif::ParallelProgressIterator;
-use predict::form::{self, Form, FormRecord};
+use predict::form::{self, FormRecord, ImoForm};
 use predict::turn::{self, Current, MeasuredCircle};
 use rayon::prelude::*;
 use report::{CurveOrigin, PlotCurve};
@@ -29,10 +29,10 @@ use crate::completed::ALL;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
-use crate::records::{self, file_and_hash, missing_track_warning, source_of};
+use crate::records::{self, file_and_hash, missing_track_warning, warning_source_of};
 use crate::scales::{self, RescaledRecords};
-use campaign::curves::{angle_curve_deg, replay_curves, zigzag_figure};
-use campaign::identified_ship::{self, RecordFacts};
+use campaign::curves::{angle_curve_deg, replay_curves, zigzag_plot_data};
+use campaign::identified_ship::{self, MethodIndependentResults};
 use campaign::statistics::grouped;
 
 /// Result of an identification.
@@ -90,7 +90,7 @@ impl FitResult {
             file: file_and_hash(trial).0.to_owned(),
             is_renamed: name != trial.name(),
             validation,
-            zigzag: zigzag.map(|zigzag| zigzag_figure(trial, &zigzag)),
+            zigzag: zigzag.map(|zigzag| zigzag_plot_data(trial, &zigzag)),
             replays: Replays {
                 record: angle_curve_deg(trial.time(), trial.heading()),
                 truth: None,
@@ -138,7 +138,7 @@ pub fn fit(
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
-    let shown = RecordFacts::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
+    let shown = MethodIndependentResults::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
@@ -198,7 +198,7 @@ fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEnt
 }
 
 /// Form of MSC/Circ.1053 with the quantities that the records measure; `None` if they measure none.
-fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
+fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<ImoForm> {
     let records: Vec<(Trial, Option<Current>)> =
         records.iter().map(|trial| turn::without_current(trial.clone(), None)).collect();
     let held = records.iter().map(|(trial, current)| FormRecord { trial, correction: None, current: *current });
@@ -210,7 +210,7 @@ fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<Form> {
 /// Document entry of a zig-zag; with criteria if length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
-    let criterion = |criterion: &imo::Criterion| CriterionEntry {
+    let criterion = |criterion: &imo::ImoCriterion| CriterionEntry {
         criterion: criterion.name.into(),
         measured: criterion.measured.map(|measured| measured.value),
         limit: criterion.limit,
@@ -234,7 +234,7 @@ fn method_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<W
 }
 
 /// Warning for a ship of known draught whose model cannot be converted to another loading.
-fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
+fn no_loading(trials: &[Trial], shown: &MethodIndependentResults) -> Option<Warning> {
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
     let text = format!("{FORM_RULED_OUT}; `study predict --load` cannot take this ship to another loading");
     (has_form && rule_out_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
@@ -243,14 +243,14 @@ fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
 /// Warning for a record whose first overshoot cannot be read.
 fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     let text = "the record begins at a reversal of the rudder, so the first overshoot is not read; begin it earlier if the log allows";
-    zigzag.begins_at_reversal.then(|| Warning::new(WarningCode::LateBegin, source_of(trial), text))
+    zigzag.begins_at_reversal.then(|| Warning::new(WarningCode::LateBegin, warning_source_of(trial), text))
 }
 
 /// Methods of the project by name with their default settings, the best first; without names the usual ones. Methods
 /// that use random numbers get this seed.
 ///
 /// Fails if no method has such a name.
-pub fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
+pub fn labelled_methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
     let all = registry::default_settings().iter().map(IdentifierSettings::build).collect::<Result<Vec<_>, _>>();
     let mut all = all.map_err(|error| Failure::execution(format!("default settings: {error}")))?;
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);

@@ -27,7 +27,7 @@ pub struct LogFit {
 
 impl LogFit {
     /// Result for a log that is identified alone by every method.
-    pub fn from_file(file: &Path, methods: &[LabelledMethod], reading: &ReadingOptions) -> Self {
+    pub fn fit_file(file: &Path, methods: &[LabelledMethod], reading: &ReadingOptions) -> Self {
         let mut warnings = Warnings::default();
         let read = read_all(&[file.to_owned()], reading, &mut warnings);
         let (is_read, of_reader) = (read.is_ok(), warnings.ranked());

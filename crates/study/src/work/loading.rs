@@ -32,14 +32,14 @@ const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 
 /// Loading described in a file.
 #[derive(Debug)]
-pub struct DescribedLoading {
+pub struct DescribedLoadingCondition {
     /// Name of the file in messages.
     pub file: String,
     /// Particulars in the file; length and speed are 0 if it gives none.
     given: HullParticulars,
 }
 
-impl DescribedLoading {
+impl DescribedLoadingCondition {
     /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
     /// Fails as a sidecar does, or if the file has no draught.
@@ -226,7 +226,8 @@ mod tests {
             ..IdentifiedHull::default()
         };
         let ship = IdentifiedShip { hulls: vec![IdentifiedHull::default(), hull], ..IdentifiedShip::default() };
-        let (loading, mut warnings) = (DescribedLoading { file: "full.toml".into(), given }, Warnings::default());
+        let (loading, mut warnings) =
+            (DescribedLoadingCondition { file: "full.toml".into(), given }, Warnings::default());
         let (mut ship, _) = loading.convert_ship("fit.json", &ship, &mut warnings).expect("another loading");
         assert_eq!(ship.hulls.len(), 1);
         (ship.hulls.remove(0), warnings.ranked())

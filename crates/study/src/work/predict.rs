@@ -18,14 +18,14 @@ use report::number::fixed;
 use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
-use super::earlier_trials::{EarlierModel, LaterShip, with_earlier};
-use super::loading::{DescribedLoading, only_hull};
+use super::earlier_trials::{EarlierModel, LaterShip, update_ship};
+use super::loading::{DescribedLoadingCondition, only_hull};
 use super::stored_ships::{StoredShips, ships_of, text_of};
 use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, scale_mismatch};
 use crate::documents::prior;
 use crate::options::PredictRequest;
-use crate::progress::ProgressStages;
-use crate::records::{file_and_hash, late_rudder_message, source_of};
+use crate::progress::ProgressSteps;
+use crate::records::{file_and_hash, late_rudder_message, warning_source_of};
 
 /// Methods of fit.json in order of preference; others come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -114,7 +114,7 @@ impl StoredModel {
     /// Model updated with earlier trials that it does not contain, and a sentence on them.
     fn after(&self, earlier: &[EarlierModel], warnings: &mut Warnings) -> Result<(Self, String), Failure> {
         let later = LaterShip { file: &self.file, ship: &self.ship, records: &self.records };
-        let after = with_earlier(earlier, later)?;
+        let after = update_ship(earlier, later)?;
         warnings.extend(after.warnings);
         let mut records = self.records.clone();
         records.extend(earlier.iter().flat_map(|model| model.records.clone()));
@@ -173,7 +173,7 @@ impl SteeredShips<'_> {
     fn predictions(
         &self,
         kinds: &[Manoeuvre],
-        steps: &ProgressStages,
+        steps: &ProgressSteps,
         warnings: &mut Warnings,
     ) -> Result<(Vec<Prediction>, Option<PredictError>), Failure> {
         let (mut predictions, mut lost) = (Vec::new(), None);
@@ -229,7 +229,7 @@ pub fn predict(
     let particulars = mixture.particulars();
     warnings.extend(particulars.and_then(unusual_froude_number));
     let (file, kinds) = (files(models).join(", "), manoeuvres(request));
-    let steps = ProgressStages::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
+    let steps = ProgressSteps::new("manoeuvres and records", (kinds.len() + records.len()) as u64, 0, 1, quiet);
     let (predictions, lost) =
         SteeredShips { mixture: &mixture, draws, file: &file }.predictions(&kinds, &steps, warnings)?;
     if let Some(error) = lost.filter(|_| predictions.is_empty() && records.is_empty()) {
@@ -282,7 +282,7 @@ fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> 
     let (_, sha256) = file_and_hash(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
     let text = format!("{} is fitted to it; the error on it validates nothing", model.file);
-    Some(Warning::new(WarningCode::Repetition, source_of(record), text))
+    Some(Warning::new(WarningCode::Repetition, warning_source_of(record), text))
 }
 
 /// Fills in the form of MSC/Circ.1053 of a document that is otherwise complete.
@@ -310,7 +310,7 @@ fn at_loading(
     ballast: &[StoredModel],
     warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
-    let loading = DescribedLoading::from_file(path)?;
+    let loading = DescribedLoadingCondition::from_file(path)?;
     let mut draughts = Vec::new();
     let mut taken = |file: &str, ship_at_trials: &IdentifiedShip| {
         let (ship, draught) = loading.convert_ship(file, ship_at_trials, warnings)?;
@@ -359,7 +359,7 @@ impl ReplayedModels<'_> {
             Ok(correction) => correction,
             Err(error @ PredictError::TooFewCompleted { .. }) => {
                 let text = format!("{error}; it is not corrected to {loading}");
-                warnings.push(WarningCode::Correction, source_of(record), text);
+                warnings.push(WarningCode::Correction, warning_source_of(record), text);
                 return Ok((replayed, None));
             }
             Err(error) => return Err(Failure::in_file(file, error)),
@@ -368,7 +368,7 @@ impl ReplayedModels<'_> {
             let text = format!(
                 "it has no zig-zag or turn that begins with the first execute, so it is not corrected to {loading}"
             );
-            warnings.push(WarningCode::Correction, source_of(record), text);
+            warnings.push(WarningCode::Correction, warning_source_of(record), text);
             return Ok((replayed, None));
         }
         let mut of_models = correction::difference_warnings(&full[0].ship, &ballast[0].ship, loading);

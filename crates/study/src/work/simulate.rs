@@ -73,7 +73,7 @@ pub struct RecordFiles {
 /// Records of one trial; the first has the name `name`, further ones of the same ship are numbered.
 ///
 /// Fails if the trial cannot be simulated.
-pub fn records(scenario: &Scenario, task: TrialId, name: &str) -> Result<Vec<RecordFiles>, Failure> {
+pub fn simulate_record_files(scenario: &Scenario, task: TrialId, name: &str) -> Result<Vec<RecordFiles>, Failure> {
     let refuse = |error: String| {
         Failure::execution(format!(
             "trial {} of cell {} of {} cannot be made: {error}",

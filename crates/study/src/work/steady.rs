@@ -10,8 +10,10 @@ use trial::Manoeuvre;
 /// Number of drawn ships.
 const DRAWS: usize = 40;
 
-/// Maximum rudder as a multiple of the largest in the records, and its range, deg.
+/// Maximum rudder angle as a multiple of the largest one in the records.
 const RUDDER_RATIO: f64 = 1.3;
+
+/// Range of the maximum rudder angle, deg.
 const RUDDER_RANGE_DEG: [f64; 2] = [10.0, 35.0];
 
 /// Steady turns of the possible responses of a ship in a calm, the most probable one first, and the range of motion

@@ -8,13 +8,13 @@ use identify::hull::differs_in_froude_number;
 use report::number::fixed;
 use ship::Particulars;
 use ship::vessel::prior::HullParticulars;
-use trial::{Conditions, Trial};
+use trial::{DeclaredConditions, Trial};
 
 use crate::options::ScaleOptions;
-use crate::records::{file_and_hash, source_of};
+use crate::records::{file_and_hash, warning_source_of};
 
 /// Name and conditions of a sidecar.
-pub type Declared<'a> = Option<(&'a str, &'a Conditions)>;
+pub type Declared<'a> = Option<(&'a str, &'a DeclaredConditions)>;
 
 /// Length and approach speed that ships are scaled to: the requested ones, or those of a trial.
 #[derive(Clone, Copy)]
@@ -103,6 +103,6 @@ pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
         fixed(declared.length, 2),
         fixed(declared.speed, 2)
     );
-    warnings.push(WarningCode::Scale, source_of(&record), text);
+    warnings.push(WarningCode::Scale, warning_source_of(&record), text);
     record.with_particulars(declared)
 }

@@ -5,13 +5,13 @@ use ::trace::{Analysis, Innovations, Settings, TraceError, Watcher};
 use campaign::Observer;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::identified_ship::{self, RecordFacts};
+use campaign::identified_ship::{self, MethodIndependentResults};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
 use document::{WarningCode, Warnings, names};
 use identify::output_error;
 use identify::plausibility::unusual_ship;
 use indicatif::ProgressBar;
-use predict::prediction::TOLERANCE;
+use predict::prediction::RANGE_FACTOR;
 use report::number::fixed;
 use ship::angle::to_deg;
 use trial::{Channel, Trial};
@@ -20,7 +20,7 @@ use super::earlier_trials::{self, EarlierModel};
 use super::planned;
 use super::single_records::RecordedZigZags;
 use crate::documents::curves::{self, TraceCurves, slugs, suffix};
-use crate::documents::{self, TRACE, missing_moment, prior};
+use crate::documents::{self, TRACE_FILE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
 use crate::records::{file_and_hash, late_rudder_message, missing_track_warning, particulars, unique_names};
@@ -45,7 +45,7 @@ impl TraceResult {
 
     /// Writes document and tables; returns the text of the document. Fails if a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<String, Failure> {
-        let text = documents::write_document(folder, TRACE, &self.document)?;
+        let text = documents::write_document(folder, TRACE_FILE, &self.document)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table)).map(|()| text)
     }
 }
@@ -79,7 +79,7 @@ impl Watcher for TraceWatch {
 }
 
 /// Message for a trace interrupted during its checks.
-pub const STOPPED: &str = "stopped before every record had been left out in turn; all other results are there";
+pub const STOPPED_MESSAGE: &str = "stopped before every record had been left out in turn; all other results are there";
 
 /// Analysis of the records together; `others` are held out. `priors` are the prior of the hull.
 ///
@@ -103,7 +103,7 @@ pub fn trace(
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let (scales, RescaledRecords { trials, held_out, .. }) = (together.scaling_sentence(), together);
-    let shown = RecordFacts::from_trials(&trials).with_motion(Some(&analysis), &settings.earlier);
+    let shown = MethodIndependentResults::from_trials(&trials).with_motion(Some(&analysis), &settings.earlier);
     warnings.extend(missing_track_warning(&shown));
     warnings.extend(unusual_ship(&analysis.base, scales::particulars(&trials), records));
     let names = unique_names(trials.iter().chain(&held_out).map(Trial::name));
@@ -175,8 +175,8 @@ fn missing_moments(
         let stem = format!("missing-moment-{slug}");
         let labels = [record.file.as_str(), &record.name, &stem];
         let entry = missing_moment::entry(&missing, labels, analysis.document.verdict, explains);
-        tables.push((entry.moment.clone(), missing_moment::over_time(&missing)));
-        tables.push((entry.curves.clone(), missing_moment::over_channels(&missing)));
+        tables.push((entry.moment.clone(), missing_moment::table_over_time(&missing)));
+        tables.push((entry.curves.clone(), missing_moment::table_over_channels(&missing)));
         moments.push(entry);
     }
     (moments, tables)
@@ -199,7 +199,7 @@ fn larger_rudder(analysis: &Analysis, fitted: &[Trial], held_out: &[Trial]) -> O
     let seen = fitted.iter().map(Trial::largest_rudder).fold(0.0, f64::max);
     let failed = held_out.iter().zip(&analysis.validation).filter_map(|(trial, comparison)| {
         let coverage = comparison.after.coverage().filter(|coverage| !coverage.is_nominal())?;
-        (trial.largest_rudder() > TOLERANCE * seen).then_some((trial, coverage))
+        (trial.largest_rudder() > RANGE_FACTOR * seen).then_some((trial, coverage))
     });
     let (trial, coverage) = failed.max_by(|(a, _), (b, _)| a.largest_rudder().total_cmp(&b.largest_rudder()))?;
     let [rudder, seen] = [trial.largest_rudder(), seen].map(|angle| fixed(to_deg(angle), 0));

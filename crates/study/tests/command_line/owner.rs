@@ -1,4 +1,4 @@
-//! What an owner and a statistician take home: ship, day and draughts on the first page, and draws of the answer.
+//! What an owner and a statistician take home: ship, date and draughts on the first page, and draws of the answer.
 
 use parquet::record::Field;
 

@@ -111,7 +111,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
     }
-    let page = include_str!("../../../../docs/src/reference/results.md");
+    let page = include_str!("../../../../docs/src/reference/files.md");
     let tables = [
         ("replay", 100),
         ("replay-other", 100),

@@ -48,8 +48,8 @@ fn circle(current: [f64; 2], turn_deg: f64) -> String {
     record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
-/// A circle among the records of a fit is measured: its advance is the way ahead at 90° of heading, and the page has it
-/// to scale beside what the zig-zag measures of the criteria of IMO.
+/// A circle among the records of a fit is measured: its advance is the way ahead at 90° change of heading, and the page
+/// has it to scale beside what the zig-zag measures of the criteria of IMO.
 #[test]
 fn a_fit_measures_a_circle_and_the_criteria() {
     let desk = Desk::new();

@@ -37,7 +37,7 @@ const LEVELS: [f64; 2] = [1e-3, 1e13];
 /// Number of points of the grid of levels.
 const GRID: usize = 12;
 
-/// Maximum likelihood estimate of log λ; `value` is −2 log L of a filter.
+/// Maximum likelihood estimate of log λ, for a ship with K/T = `gain` (1/s²); `value` is −2 log L of a filter.
 pub(super) fn maximum_likelihood_level(
     rows: &MomentRows,
     gain: f64,
@@ -144,7 +144,8 @@ pub struct MomentCurve {
 
 impl MomentCurve {
     /// Curve of a record against a channel, with the curves of explanations from their heading responses relative to
-    /// the base (rad). `None` if the channel does not vary or the rows do not determine the curve.
+    /// the base (rad), for a ship with K/T = `gain` (1/s²). `None` if the channel does not vary or the rows do not
+    /// determine the curve.
     pub(super) fn new(
         rows: &MomentRows,
         gain: f64,

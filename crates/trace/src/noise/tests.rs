@@ -1,11 +1,11 @@
 use super::*;
 use nalgebra::DVector;
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, RecordOrigin, Trial};
 
 fn record(time: &[f64]) -> PreparedRecord {
     let wave = |scale: f64| time.iter().map(|t| scale * (0.05 * t).sin()).collect::<Vec<_>>();
     let channels = [(Channel::Heading, wave(0.2)), (Channel::Rudder, wave(0.1))].into();
-    let origin = Origin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
     let columns = Columns { time: time.to_vec(), channels, unknown: Vec::new() };
     PreparedRecord::unaveraged(&Trial::new("noise", origin, columns).expect("a valid record"))
 }

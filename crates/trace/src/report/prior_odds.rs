@@ -8,8 +8,8 @@ use crate::model::TermName;
 pub const PRIOR_ODDS_FACTORS: [f64; 5] = [0.1, 1.0 / 3.0, 1.0, 3.0, 10.0];
 
 /// Probability of a single effect from its log evidence ratio, with its prior odds multiplied by a factor.
-pub fn probability_from_gain(gain: f64, factor: f64) -> f64 {
-    1.0 / (1.0 + (-gain).exp() * (1.0 - PRIOR_PROBABILITY) / (factor * PRIOR_PROBABILITY))
+pub fn probability_from_log_ratio(log_ratio: f64, factor: f64) -> f64 {
+    1.0 / (1.0 + (-log_ratio).exp() * (1.0 - PRIOR_PROBABILITY) / (factor * PRIOR_PROBABILITY))
 }
 
 impl TraceParts<'_> {

@@ -21,7 +21,7 @@ pub type HeadingColumn = Vec<(usize, Vec<f64>)>;
 /// Residual and sensitivities of a structure; integrated unknowns come first.
 #[derive(Debug, Clone)]
 pub struct LinearisedStructure {
-    /// Residual and sensitivities.
+    /// Heading residual and its sensitivities to the unknowns, by record.
     pub linear: Linearisation,
     /// Number of integrated unknowns; the coefficients after them are penalised.
     pub integrated: usize,
@@ -55,8 +55,9 @@ impl LinearisedStructure {
 #[derive(Debug, Clone)]
 pub struct WhitenedStructure {
     blocks: Vec<HeadingSensitivities>,
-    /// Rows of the lower Cholesky factor L of the products of all columns, and L⁻¹ times the gradient.
+    /// Rows of the lower Cholesky factor L of the products of all columns.
     factor: Vec<Vec<f64>>,
+    /// L⁻¹ times the gradient.
     solution: Vec<f64>,
     /// Sequential t values of the penalised coefficients, times s.
     t_values: Vec<f64>,
@@ -64,8 +65,9 @@ pub struct WhitenedStructure {
     square: f64,
     /// Part independent of the shapes: Σ log S, log det, and the penalty of the law.
     fixed: f64,
-    /// n − p and log n.
+    /// Degrees of freedom n − p.
     freedom: f64,
+    /// log n.
     log_n: f64,
     /// Lower bound of s².
     min_variance: f64,
@@ -74,9 +76,11 @@ pub struct WhitenedStructure {
 /// Products of appended columns with the columns of a structure, with each other, and with its residual.
 #[derive(Debug, Clone)]
 pub struct GramProducts {
-    /// With the columns of the structure, by appended column.
+    /// Products with the columns of the structure, by appended column.
     pub cross: Vec<Vec<f64>>,
+    /// Products with each other.
     gram: Vec<Vec<f64>>,
+    /// Products with the residual.
     gradient: Vec<f64>,
 }
 

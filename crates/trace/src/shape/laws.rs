@@ -7,9 +7,13 @@ use ship::narrow_band::NarrowBand;
 
 use crate::noise::{COMPASS_CORRELATION_SHARES, CorrelatedNoise, GUST_CORRELATION_SHARES, NoiseColour};
 
-/// Periods (s), damping ratio and sizes of the waves.
+/// Periods of the waves, s.
 const WAVE_PERIODS: [f64; 4] = [5.0, 7.0, 9.0, 12.0];
+
+/// Damping ratio of the waves.
 const WAVE_DAMPING: f64 = 0.1;
+
+/// Sizes of the waves: standard deviation of their heading error over that of the white noise.
 const WAVE_SIZES: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 
 /// Minimum number of rows per period of waves.

@@ -4,15 +4,19 @@ use document::trace::Dependence;
 
 use super::dictionary::{Shape, ShipSignal, SignalFunction};
 
-/// Delays and lags, as multiples of the time unit of a ship.
+/// Delays of the rudder, in time units of the ship.
 const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Time constants of the lags of a signal, in time units of the ship.
 const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
 /// Number of instants per record.
 const INSTANTS: usize = 48;
 
-/// Durations of transient moments, as shares of the record, and the factor of a squall over a pulse.
+/// Durations of transient moments, as shares of the record.
 const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
+
+/// Duration of a squall over that of a pulse.
 const SQUALL: f64 = 1.6;
 
 /// Durations of ramps, as shares of the record.

@@ -39,12 +39,16 @@ pub const MAX_EQUIVALENT_GAIN_NATS: f64 = 3.0;
 /// Minimum significant gain of a smooth moment of unknown shape, nats.
 const MIN_SMOOTH_GAIN: f64 = 1.5;
 
-/// Maximum number of updates of the response under the best law, and the relative change of 1/T that ends them.
+/// Maximum number of updates of the response under the best law.
 const MAX_ROUNDS: usize = 3;
+
+/// Relative change of 1/T that ends the updates.
 const TIME_TOLERANCE: f64 = 0.02;
 
-/// Time unit of the lags over T, and the maximum T for it, s.
+/// Time unit of the lags over T.
 const UNIT: f64 = 1.0 / 16.0;
+
+/// Maximum T from which the time unit is computed, s.
 const MAX_TIME_S: f64 = 1000.0;
 
 /// Shape of a missing moment, with its size and the loss of log likelihood without it.
@@ -84,8 +88,8 @@ pub struct ShapeAnalysis {
     pub coefficients: Vec<Vec<f64>>,
     /// Losses without each of the shapes of the best, nats.
     pub losses: Vec<f64>,
-    /// Gain of the best explanation over the best random law without shapes, nats.
-    pub gain: f64,
+    /// Gain in log likelihood of the best explanation over the best random law without shapes, nats.
+    pub gain_nats: f64,
     /// Criterion of the best random law without shapes.
     pub random_criterion: f64,
     /// Power of the likelihood: below one if the noise includes a model error. Gain and losses include it, criteria do
@@ -106,7 +110,7 @@ pub struct ShapeAnalysis {
 impl ShapeAnalysis {
     /// `true` if the gain of the shapes is significant.
     pub fn is_located(&self) -> bool {
-        self.gain >= MIN_GAIN_NATS
+        self.gain_nats >= MIN_GAIN_NATS
     }
 
     /// Shapes of the best explanation with a clear loss, the clearest first; `duration` is the length of a record, s.
@@ -181,8 +185,9 @@ struct ShapeProblem<'a> {
     laws: Vec<RandomLaw>,
     weights: Vec<RecordWhitening>,
     structure: Vec<Option<WhitenedStructure>>,
-    /// Criterion and index of the best law without shapes.
+    /// Criterion of the best law without shapes.
     criterion: f64,
+    /// Index of that law.
     law: usize,
 }
 
@@ -246,7 +251,7 @@ impl<'a> ShapeProblem<'a> {
             heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
             moment: self.moment(&best, whole.sd(), [longest, problem.time]),
             equivalent: tried,
-            gain: 0.5 * power * (self.criterion - best.criterion),
+            gain_nats: 0.5 * power * (self.criterion - best.criterion),
             power,
             random_criterion: self.criterion,
             is_smooth: best.shapes.is_empty() && 0.5 * power * (self.criterion - smooth) >= MIN_SMOOTH_GAIN,

@@ -9,9 +9,10 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 use super::criterion::LinearisedStructure;
 use super::motion::PredictedMotion;
 
-/// Minimum gap, in usual steps between headings, after which heading and yaw rate restart, and maximum number of such
-/// gaps per record.
+/// Minimum gap, in usual steps between headings, after which heading and yaw rate restart.
 const MIN_GAP_STEPS: f64 = 3.5;
+
+/// Maximum number of such gaps per record: the longest ones.
 const MAX_GAPS: usize = 4;
 
 /// Structure at a point, with the noise transitions of a ship of its T.
@@ -116,7 +117,7 @@ impl<'a> StructurePoint<'a> {
     /// is largest.
     fn min_variance(&self) -> f64 {
         // With a typical gain for this length and speed, so that it is equal for every structure.
-        let floors = law::min_variances(self.problem, self.problem.time.powi(-2));
+        let floors = law::min_noise_variances(self.problem, self.problem.time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 

@@ -20,10 +20,13 @@ const CLASSES: f64 = 11.0;
 /// Maximum number of shapes.
 const MAX_SHAPES: usize = 3;
 
-/// Finalists whose law is chosen again: number of best shapes, number of classes with their best shape; and number of
-/// finalists that are refined.
+/// Number of best shapes whose law is chosen again.
 const FINALISTS: usize = 5;
+
+/// Number of classes of shapes of which the law of the best shape is chosen again.
 const CLASS_FINALISTS: usize = 6;
+
+/// Maximum number of explanations that are refined.
 const MAX_REFINED: usize = 2;
 
 /// Number of shapes whitened together.
@@ -70,7 +73,7 @@ pub struct ShapeSearch<'a> {
 const MIN_RMS: f64 = 1e-12;
 
 impl ShapeSearch<'_> {
-    /// Candidate in all records, or in one; `None` if its moment is zero there.
+    /// Candidate of a shape that acts in all records or in one; `None` if its moment is zero there.
     fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<Candidate> {
         let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.record_index));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
@@ -141,7 +144,8 @@ impl ShapeSearch<'_> {
         self.structure.par_iter().enumerate().map(extend).collect()
     }
 
-    /// Criterion and index of the best law of structures with shapes appended.
+    /// Criterion and index of the law under which a structure with `shapes` appended is best; `structures` are the
+    /// structure before, under every law.
     fn best_law(&self, structures: &[Option<WhitenedStructure>], shapes: &[&Candidate]) -> (f64, usize) {
         let penalty: f64 = shapes.iter().map(|shape| shape.penalty).sum();
         let criterion = |(law, structure): (usize, &Option<WhitenedStructure>)| {

@@ -14,7 +14,7 @@ use super::criterion::{LinearisedStructure, WhitenedStructure};
 use super::dictionary::{ShipSignal, SignalFunction};
 use super::library::shapes;
 use super::*;
-use crate::base::Base;
+use crate::base::FittedBase;
 use crate::candidates::ship_time;
 use crate::fit::StoppingRule;
 use crate::full::start_point;
@@ -44,7 +44,7 @@ fn with_formula(formula: &str, c: f64) -> Trial {
 
 /// Shape analysis of the residual of the base.
 fn analysed(trials: &[Trial]) -> ShapeAnalysis {
-    let base = Base::fit(trials).expect("a base");
+    let base = FittedBase::fit(trials).expect("a base");
     let response = base.estimate.response;
     let time = ship_time(trials, response.K_over_T);
     let records = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
@@ -94,7 +94,7 @@ fn moments_of_the_motion_are_located() {
     ];
     for (formula, c, dependence) in cases {
         let analysis = analysed(&[with_formula(formula, c)]);
-        assert!(analysis.is_located(), "{formula}: {}", analysis.gain);
+        assert!(analysis.is_located(), "{formula}: {}", analysis.gain_nats);
         assert_eq!(clearest(&analysis).0.dependence(), dependence, "{formula}");
     }
 }

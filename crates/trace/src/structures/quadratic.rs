@@ -2,15 +2,17 @@
 //! terms.
 
 use estimation::levenberg_marquardt::NormalEquations;
-use estimation::subsets::{MAX_TERMS, RemovableTerm, condition_neutral, conditional_mean, subset_log_weights};
+use estimation::subsets::{MAX_SUBSET_TERMS, RemovableTerm, condition_neutral, conditional_mean, subset_log_weights};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::fit::{log_normaliser, prior_deviation};
 use crate::model::{Structure, Term};
 
-/// Number of structures refitted per round, and the maximum log odds against the best for a refit.
+/// Maximum number of structures refitted per round.
 const MAX_REFITS: usize = 4;
+
+/// Maximum log odds of the best structure against a structure that is refitted.
 pub(super) const MAX_LOG_ODDS: f64 = 5.0;
 
 /// Number of structures with one more term that are refitted per round.
@@ -20,7 +22,7 @@ const MAX_ADDITIONS: usize = 2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TermEvidence {
     /// Log evidence ratio of the best structure with the candidate to the best structure without it.
-    pub gain: f64,
+    pub log_ratio: f64,
     /// p value (χ²) of the coefficients with all other candidates present.
     pub p_value: f64,
 }
@@ -39,7 +41,7 @@ pub(super) struct QuadraticPosterior {
 impl QuadraticPosterior {
     /// Approximation about a point of the full structure; `None` if the precision is singular.
     pub fn new(normal: &NormalEquations, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
-        let unknowns = structure.unknowns();
+        let unknowns = structure.unknown_indices();
         let count = normal.gradient.len();
         let mut at = DVector::zeros(count);
         unknowns.iter().zip(theta).for_each(|(place, value)| {
@@ -93,13 +95,13 @@ impl QuadraticPosterior {
         Some(Self { covariance, mean, removable, pinned, free })
     }
 
-    /// Support of every term from the log weights of all subsets. The gain is for the effect in any form; `effects`
-    /// identifies the terms that are forms of one effect.
+    /// Support of every term from the log weights of all subsets. The log ratio is for the effect in any form;
+    /// `effects` identifies the terms that are forms of one effect.
     pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<TermEvidence> {
         let (kept, weights) = self.weighed();
         let support = |number: usize| {
             if !kept.contains(&number) {
-                return TermEvidence { gain: 0.0, p_value: 1.0 };
+                return TermEvidence { log_ratio: 0.0, p_value: 1.0 };
             }
             let term = &self.removable[number];
             let p_value = chi_square_p_value(&term.sizes, &self.covariance).unwrap_or(1.0);
@@ -113,12 +115,12 @@ impl QuadraticPosterior {
                 let all = weights.iter().enumerate().filter(|(subset, _)| (subset & forms != 0) == with);
                 all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
             };
-            TermEvidence { gain: highest(true) - highest(false) - term.log_odds, p_value }
+            TermEvidence { log_ratio: highest(true) - highest(false) - term.log_odds, p_value }
         };
         (0..self.removable.len()).map(support).collect()
     }
 
-    /// Weighed terms, at most [`MAX_TERMS`], and the log weights of all their subsets.
+    /// Weighed terms, at most [`MAX_SUBSET_TERMS`], and the log weights of all their subsets.
     fn weighed(&self) -> (Vec<usize>, Vec<f64>) {
         let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
         let (kept, covariance, removable) = self.most_relevant(free);
@@ -153,12 +155,12 @@ impl QuadraticPosterior {
         order.into_iter().map(chosen).collect()
     }
 
-    /// Subset of the [`MAX_TERMS`] most relevant terms, with the covariance after removal of the other terms.
+    /// Subset of the [`MAX_SUBSET_TERMS`] most relevant terms, with the covariance after removal of the other terms.
     fn most_relevant(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<RemovableTerm>) {
         let mut covariance = self.covariance.clone();
         let mut mean = self.mean.clone();
         let mut removable = self.removable.clone();
-        while kept.len() > MAX_TERMS {
+        while kept.len() > MAX_SUBSET_TERMS {
             let loss = |&k: &usize| {
                 subset_log_weights(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds
             };
@@ -188,7 +190,8 @@ pub fn chi_square_p_value(sizes: &[(usize, f64)], covariance: &DMatrix<f64>) -> 
     Some(ChiSquared::new(sizes.len() as f64).ok()?.sf(square))
 }
 
-/// Removable term at a point θ of the full model; `places` are its indices in θ with their unknowns.
+/// Term that can be removed from the full model, at a point θ; `places` are the indices of its parameters in θ, each
+/// with its index among the unknowns if it is fitted.
 fn removable(
     term: &Term,
     theta: &[f64],

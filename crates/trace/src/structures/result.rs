@@ -92,14 +92,14 @@ impl Structures {
     /// Evidence for the best form of an effect.
     pub fn effect_evidence(&self, id: &str, record: Option<usize>) -> TermEvidence {
         let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == record).map(|(_, form)| *form);
-        let none = TermEvidence { gain: 0.0, p_value: 1.0 };
-        let mut best = forms.max_by(|a, b| a.gain.total_cmp(&b.gain)).unwrap_or(none);
+        let none = TermEvidence { log_ratio: 0.0, p_value: 1.0 };
+        let mut best = forms.max_by(|a, b| a.log_ratio.total_cmp(&b.log_ratio)).unwrap_or(none);
         // The refitted structures are more accurate than the quadratic approximation.
         let probability = self.effect_probability(id, record).clamp(1e-12, 1.0 - 1e-12);
         if probability > 0.5 {
-            best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PRIOR_PROBABILITY.ln());
+            best.log_ratio = best.log_ratio.max((probability / (1.0 - probability)).ln() - PRIOR_PROBABILITY.ln());
         }
-        best.gain = best.gain.clamp(-1e6, 1e6);
+        best.log_ratio = best.log_ratio.clamp(-1e6, 1e6);
         best
     }
 

@@ -39,7 +39,8 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
     })
 }
 
-/// Sets the repetitions of a heading written on change to missing.
+/// Replaces repeated readings by NaN if the logger writes the heading only when it changes; returns the warning, `None`
+/// if nothing was replaced.
 pub(super) fn blank_held(columns: &mut Columns) -> Option<Warning> {
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();

@@ -10,14 +10,16 @@ use crate::plausibility::{extremes, range};
 use crate::zigzag::executes::{RudderMovements, row_before};
 use crate::zigzag::holds::{self, MIN_HOLD_ANGLE_SHARE};
 
-/// Tolerances of the rudder in a steady approach, as shares of the rudder of the manoeuvre: about its median, and of
-/// its median about amidships.
+/// Tolerance of the rudder about its median in a steady approach, as a share of the rudder of the manoeuvre.
 const STEADY_RUDDER: f64 = 0.15;
+
+/// Tolerance of the median rudder about amidships in a steady approach, as a share of the rudder of the manoeuvre.
 const AMIDSHIPS: f64 = 0.35;
 
-/// Maximum change of heading in a steady approach: a rate, as a share of the usual rate of the manoeuvre, plus a share
-/// of a swing for noise and waves.
+/// Maximum rate of change of heading in a steady approach, as a share of the usual rate of the manoeuvre.
 const STEADY_RATE: f64 = 0.2;
+
+/// Additional change of heading in a steady approach for noise and waves, as a share of a swing.
 const STEADY_HEADING: f64 = 0.05;
 
 /// Minimum length of a steady approach as a share of the maximum length; shorter if the log begins with it.
@@ -32,9 +34,10 @@ const GAP_STEPS: f64 = 30.0;
 /// Maximum number of holds for the time of the first execute; more holds do not make it more certain.
 const MAX_TIMING_HOLDS: usize = 4;
 
-/// Tolerance of the rudder about the line of its movement, as a share of the band of a hold, and minimum number of rows
-/// on such a line.
+/// Tolerance of the rudder about the line of its movement, as a share of the band of a hold.
 const RAMP_TOLERANCE: f64 = 0.6;
+
+/// Minimum number of rows on the line of a movement.
 const MIN_RAMP_ROWS: usize = 3;
 
 /// Number of rows before a movement whose median is the rudder angle before it.
@@ -130,7 +133,7 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
         return window + row;
     }
     let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise_sd));
-    let Some(movement) = rudder.first() else { return hold.first };
+    let Some(movement) = rudder.first_movement() else { return hold.first };
     let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
     let rate = movement.rate.map(f64::abs).or(rudder.rate);
     rate.map_or(start, |rate| {
@@ -215,7 +218,7 @@ impl ApproachSegment {
             let first = time.partition_point(|&t| t < time[start] - share * longest).max(rudder_from);
             let duration = time[start] - time[first];
             let long = duration >= MIN_APPROACH_SHARE * pattern.scale * (1.0 - 1e-9) || first == 0;
-            let turned = record.course.change(time[first], time[start - 1]);
+            let turned = record.course.heading_change(time[first], time[start - 1]);
             let limit = STEADY_RATE * rate * duration + STEADY_HEADING * pattern.swing;
             if long && first < start && turned.is_none_or(|turned| turned.abs() <= limit) {
                 return Self { first, approach: Approach::Steady, speed_change };

@@ -47,15 +47,15 @@ impl HeadingReadings {
     }
 
     /// Change of heading between two times, rad; each heading is a median over a twentieth of the time between them.
-    pub fn change(&self, from: f64, to: f64) -> Option<f64> {
+    pub fn heading_change(&self, from: f64, to: f64) -> Option<f64> {
         let time = to - from;
         let [before, after] = [from, to].map(|t| self.heading_near(t, 0.05 * time, 0.25 * time));
         Some(after? - before?)
     }
 
     /// Mean rate between two times, rad/s.
-    pub fn rate(&self, from: f64, to: f64) -> Option<f64> {
-        (to > from).then(|| self.change(from, to))?.map(|change| change / (to - from))
+    pub fn mean_rate(&self, from: f64, to: f64) -> Option<f64> {
+        (to > from).then(|| self.heading_change(from, to))?.map(|change| change / (to - from))
     }
 }
 

@@ -54,10 +54,12 @@ pub(crate) struct Pattern {
 }
 
 impl Pattern {
+    /// First row of the first hold.
     pub fn first(&self) -> usize {
         self.holds[0].first
     }
 
+    /// Last row of the last hold.
     pub fn last(&self) -> usize {
         self.holds[self.holds.len() - 1].last
     }

@@ -7,8 +7,10 @@ use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
 
-/// Minimum number of holds of a sweep from side to side, and of a partial sweep before or after it.
+/// Minimum number of holds of a sweep from side to side.
 const MIN_HOLDS: usize = 5;
+
+/// Minimum number of holds of a partial sweep before or after it.
 const MIN_PART_HOLDS: usize = 3;
 
 /// Minimum step of the rudder, rad.
@@ -29,9 +31,10 @@ const MIN_HOLD_SHARE: f64 = 0.4;
 /// Maximum ratio of the rudder angles to both sides.
 const MAX_SIDE_RATIO: f64 = 2.0;
 
-/// Maximum change of the yaw rate within the last two thirds of a hold, and maximum change against the rudder from a
-/// hold to the next, as shares of the range of rates.
+/// Maximum change of the yaw rate within the last two thirds of a hold, as a share of the range of rates.
 const MAX_RATE_CHANGE: f64 = 0.04;
+
+/// Maximum change of the yaw rate against the rudder from a hold to the next, as a share of the range of rates.
 const MAX_RATE_REVERSAL: f64 = 0.15;
 
 /// Spirals of a log.
@@ -53,7 +56,7 @@ pub(crate) fn spirals(record: &PreparedLog) -> Vec<Pattern> {
         group[1..].iter().for_each(|sweep| holds.extend(&sweep[1..]));
         let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
         let scale = finite_median(holds.iter().map(Hold::duration));
-        let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
+        let turns = holds.iter().filter_map(|hold| record.course.heading_change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
         patterns.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
     }
@@ -100,7 +103,7 @@ fn is_answered(record: &PreparedLog, sweep: &[Hold]) -> bool {
     let thirds = |hold: &Hold| {
         let third = hold.duration() / 3.0;
         let late = hold.until - third;
-        record.course.rate(late - third, late).zip(record.course.rate(late, hold.until))
+        record.course.mean_rate(late - third, late).zip(record.course.mean_rate(late, hold.until))
     };
     let Some(rates) = sweep.iter().map(thirds).collect::<Option<Vec<(f64, f64)>>>() else { return false };
     let (first, last) = (rates[0].1, rates[rates.len() - 1].1);

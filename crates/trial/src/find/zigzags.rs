@@ -14,8 +14,10 @@ use estimation::statistics::median;
 /// Maximum ratio of the rudder angles to both sides.
 const MAX_SIDE_RATIO: f64 = 1.6;
 
-/// Tolerance of the holds to one side, as a share of their level; for small levels in rad.
+/// Tolerance of the holds to one side, as a share of their level.
 const SIDE_TOLERANCE: f64 = 0.15;
+
+/// Tolerance of the holds to one side at small levels, rad.
 const MIN_SIDE_TOLERANCE: f64 = 1.5_f64.to_radians();
 
 /// Maximum duration of a movement from side to side, as a share of the longer adjacent hold. A first hold may be short.
@@ -33,24 +35,33 @@ const MIN_HELD_SHARE: f64 = 0.3;
 /// Maximum ratio of a swing of the heading, from execute to execute, to the next.
 const MAX_SWING_RATIO: f64 = 1.7;
 
-/// Change of heading in the first hold, as a share of the swings: half a swing from the base course, somewhat more
-/// if the hold begins within a reversal. With only three holds the bounds are narrow, against chance.
+/// Minimum and maximum change of heading in the first hold, as shares of the swings: half a swing from the base course,
+/// more if the hold begins within a reversal.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
+
+/// The same for a trial of only three holds: narrow, against chance.
 const ONLY_SWING: (f64, f64) = (0.4, 0.62);
 
-/// Straight approach of a trial of three holds: its length as a share of the first hold, maximum change of heading as a
-/// share of the swings, and maximum rudder off amidships as a share of its level.
+/// Length of the straight approach of a trial of three holds, as a share of the first hold.
 const APPROACH_SHARE: f64 = 0.5;
+
+/// Maximum change of heading in that approach, as a share of the swings.
 const MAX_APPROACH_TURN: f64 = 0.12;
+
+/// Maximum rudder off amidships in that approach, as a share of its level in the holds.
 const MAX_AMIDSHIPS_SHARE: f64 = 0.5;
 
-/// Rudder angle and change of heading of a clear zig-zag, rad; one of them is sufficient. An autopilot on a course
-/// uses 3 degrees of rudder and lets the heading vary by one.
+/// Minimum rudder angle of a clear zig-zag, rad; this or the change of heading is sufficient. An autopilot on a course
+/// uses 3 degrees of rudder.
 const CLEAR_RUDDER: f64 = 4.0_f64.to_radians();
+
+/// Minimum change of heading of a clear zig-zag, rad. Under an autopilot on a course the heading varies by one degree.
 const CLEAR_HEADING: f64 = 2.0_f64.to_radians();
 
-/// Minimum rudder angle and change of heading from the base course, rad.
+/// Minimum rudder angle of a zig-zag, rad.
 const MIN_RUDDER: f64 = 0.8_f64.to_radians();
+
+/// Minimum change of heading from the base course, rad.
 const MIN_HEADING: f64 = 0.6_f64.to_radians();
 
 /// Maximum change of heading from the base course, rad.
@@ -207,7 +218,7 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
         first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
-    let turned = record.course.change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
+    let turned = record.course.heading_change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
     if turned > MAX_LAST_SWINGS * swing {
         last -= 1;
     }

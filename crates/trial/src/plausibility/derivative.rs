@@ -15,7 +15,7 @@ const MAX_AUTOCORRELATION: f64 = -0.2;
 
 /// `true` if the yaw rate repeats the noise and the jumps of the heading, as its derivative does.
 pub(crate) fn is_derivative(trial: &Trial) -> bool {
-    if trial.heading_from_yaw_rate() {
+    if trial.is_heading_integrated() {
         return false;
     }
     let (time, psi) = (trial.time(), trial.heading());

@@ -13,7 +13,7 @@ pub(crate) fn range(values: &[f64]) -> f64 {
 }
 
 /// Number of reversals of a rudder (rad): movements from side to side of its range, by more than half of it.
-pub fn reversals(rudder: &[f64]) -> usize {
+pub fn count_reversals(rudder: &[f64]) -> usize {
     let (low, high) = extremes(rudder.iter().copied());
     let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
     let mut side = 0.0;

@@ -69,7 +69,7 @@ pub(crate) fn steady_turn_gain(trial: &Trial) -> Option<PartialSlope> {
 /// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `first_order_gain`, or without a recorded yaw
 /// rate.
 pub(super) fn heading_on_yaw_rate(trial: &Trial) -> Option<PartialSlope> {
-    if trial.heading_from_yaw_rate() {
+    if trial.is_heading_integrated() {
         return None;
     }
     let (time, psi, rate) = (trial.time(), trial.heading(), trial.yaw_rate()?);

@@ -187,7 +187,7 @@ fn feedback(trial: &Trial, order: &[f64]) -> Option<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Columns, Origin};
+    use crate::record::{Columns, RecordOrigin};
     use ship::angle::from_deg;
 
     /// Warnings of a rudder that alternates between ±20° at a rate (deg/s), read every `step` s, and of its order.
@@ -210,7 +210,7 @@ mod tests {
         if with_order {
             channels.insert(Channel::RudderOrder, time.iter().map(|&t| from_deg(order(t))).collect());
         }
-        let origin = Origin::Measured { file: String::new(), sha256: String::new() };
+        let origin = RecordOrigin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns");
         rudder_movements(&trial).map(|warning| warning.text).collect::<Vec<_>>().join("; ")
     }

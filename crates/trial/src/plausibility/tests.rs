@@ -6,7 +6,7 @@ use ship::angle::from_deg;
 
 use super::*;
 use crate::channel::Channel;
-use crate::record::{Columns, Origin};
+use crate::record::{Columns, RecordOrigin};
 
 /// Rudder and heading of a ship with K, T (s), 10 Hz, by small Euler steps; `steer` gives the rudder from time,
 /// heading, rate.
@@ -51,7 +51,7 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
 }
 
 fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausible> {
-    let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
     let checked = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and each gives a warning of that.
     checked

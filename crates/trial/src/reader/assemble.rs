@@ -25,7 +25,7 @@ const TIME_TOLERANCE: f64 = 1e-6;
 /// Observed channels: their readings are the rows.
 const OBSERVED: [Channel; 4] = [Channel::Heading, Channel::Rudder, Channel::RudderOrder, Channel::YawRate];
 
-/// Columns of channels with different sampling instants.
+/// Columns of series with different instants; rows are the union of the instants of the observed channels.
 pub(super) fn merge_series(series: &[Series]) -> Columns {
     let is_observed = |series: &&Series| OBSERVED.contains(&series.channel);
     let mut time: Vec<f64> = series.iter().filter(is_observed).flat_map(|series| series.time.iter().copied()).collect();

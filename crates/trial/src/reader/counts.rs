@@ -9,7 +9,7 @@ use super::layout::{Content, RawColumn};
 use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
 use crate::cleaning::{MAX_IMPOSSIBLE_SHARE, MIN_IMPOSSIBLE_RUDDER_RAD};
-use crate::plausibility::{extremes, range, reversals};
+use crate::plausibility::{count_reversals, extremes, range};
 use crate::wording::shortened;
 
 /// Maximum angle of a rudder, deg: few exceed 45°.
@@ -94,7 +94,7 @@ fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     if !heading.is_whole || heading.largest > 3600.0 {
         return false;
     }
-    let ratio = rudder.filter(|rudder| reversals(&rudder.values) >= 2);
+    let ratio = rudder.filter(|rudder| count_reversals(&rudder.values) >= 2);
     let ratio = ratio.map(|rudder| range(&heading.values) / range(&rudder.values));
     let wraps = TENTHS_WRAP.contains(&heading.largest_step);
     // A single wrong reading may step as far, but does not move the heading.

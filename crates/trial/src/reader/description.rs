@@ -7,7 +7,7 @@ use super::head;
 use super::input::{self, Content};
 use super::limits::is_comment;
 use super::lines::Lines;
-use crate::cells::{Cell, Separator, parse_cell};
+use crate::cells::{CellContent, Separator, parse_cell};
 use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
 use crate::names::{ColumnMeaning, column_meaning, quantity_unit_meaning, with_unit};
@@ -131,7 +131,7 @@ fn summary(rows: &[String], index: usize, separator: Separator) -> String {
         separator.split(row, &mut ranges);
         let text = ranges.get(index).map_or("", |range| &row[range.clone()]);
         match parse_cell(text, separator) {
-            Cell::Text => word = word.or_else(|| Some(shortened(text))),
+            CellContent::Text => word = word.or_else(|| Some(shortened(text))),
             read => {
                 if let Some(value) = read.number() {
                     (low, high, numbers) = (low.min(value), high.max(value), numbers + 1);

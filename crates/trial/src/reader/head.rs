@@ -6,7 +6,7 @@ use std::io::Read;
 use super::error::Problem;
 use super::limits::{is_comment, no_rows_problem};
 use super::lines::Lines;
-use crate::cells::{Cell, Separator, detect_separator, parse_cell, unquoted};
+use crate::cells::{CellContent, Separator, detect_separator, parse_cell, unquoted};
 use crate::channel::Unit;
 use crate::names;
 use crate::sidecar::{ColumnReference, Sidecar};
@@ -45,7 +45,7 @@ impl Head {
     }
 
     /// Cells of the first row.
-    pub fn first(&self) -> Vec<&str> {
+    pub fn first_row(&self) -> Vec<&str> {
         self.rows.first().map_or_else(Vec::new, |(_, text)| split(text, self.separator))
     }
 }
@@ -131,7 +131,7 @@ fn units_of(cells: &[&str], separator: Separator) -> Option<Vec<Option<Unit>>> {
 pub(super) fn separator_of_numbers(line: &str) -> Option<Separator> {
     let count = |separator: Separator| {
         let cells = split(line, separator);
-        let all = cells.iter().all(|text| parse_cell(text, separator) != Cell::Text);
+        let all = cells.iter().all(|text| parse_cell(text, separator) != CellContent::Text);
         if all { cells.len() } else { 0 }
     };
     // Ties go to the earlier separator, so the search runs from the last.

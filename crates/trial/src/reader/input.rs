@@ -13,8 +13,10 @@ use super::messages::{self, MessageFormat};
 use super::nmea;
 use crate::file::{self, FileError, LimitedReader};
 
-/// Number of bytes that distinguish sentences from a table.
+/// Number of bytes at the beginning of a file from which its content is recognised.
 const HEAD_BYTES: u64 = 1 << 14;
+
+/// Maximum number of lines in these bytes that are searched for sentences and messages.
 const HEAD_LINES: usize = 60;
 
 /// Text of a file, from its first byte on.

@@ -7,7 +7,7 @@ use super::source::{ChannelReadings, Log};
 use crate::channel::Channel;
 use crate::plausibility::range;
 use crate::plausibility::regression::{first_order_gain, partial_slope, steady_turn_gain, thinned};
-use crate::record::{Origin, Trial, integrate};
+use crate::record::{RecordOrigin, Trial, integrate};
 
 /// Minimum share of a channel explained by its reference.
 const MIN_SHARE: f64 = 0.5;
@@ -65,7 +65,7 @@ impl Log {
 
     /// `true` if positive rudder turns the ship to starboard; `None` if the log does not determine it.
     fn turns_with_rudder(&self) -> Option<bool> {
-        let origin = Origin::Measured { file: String::new(), sha256: String::new() };
+        let origin = RecordOrigin::Measured { file: String::new(), sha256: String::new() };
         let trial = Trial::new("", origin, self.columns.clone()).ok()?;
         let is_circle = range(trial.heading()) > MAX_SWING;
         let slope = if is_circle { steady_turn_gain(&trial) } else { first_order_gain(&trial) };

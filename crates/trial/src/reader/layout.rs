@@ -151,11 +151,11 @@ impl Layout {
         } else {
             layout.settle_time(head).map_err(fault)?;
         }
-        layout.order_is_rudder = layout.index(Channel::Rudder).is_none();
+        layout.order_is_rudder = layout.column_of(Channel::Rudder).is_none();
         if whole {
             layout.check().map_err(fault)?;
         }
-        if layout.time().is_none() && !rebuilt {
+        if layout.time_column().is_none() && !rebuilt {
             let accepted = "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".into();
             let (line, columns) = (head.line, layout.names());
             return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, columns }));
@@ -172,22 +172,22 @@ impl Layout {
     }
 
     /// Column of the rudder: the angle, or the order without an angle.
-    pub fn rudder(&self) -> Option<usize> {
-        self.index(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
+    pub fn rudder_column(&self) -> Option<usize> {
+        self.column_of(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
     }
 
     /// Column of a channel.
-    pub fn index(&self, wanted: Channel) -> Option<usize> {
+    pub fn column_of(&self, wanted: Channel) -> Option<usize> {
         self.find(|content| matches!(content, Content::Channel(channel, _) if channel == wanted))
     }
 
     /// Column of time.
-    pub fn time(&self) -> Option<usize> {
+    pub fn time_column(&self) -> Option<usize> {
         self.find(|content| matches!(content, Content::Time(_) | Content::Stamp))
     }
 
     /// Column of the dates that belong to times of day.
-    pub fn date(&self) -> Option<usize> {
+    pub fn date_column(&self) -> Option<usize> {
         self.find(|content| content == Content::Date)
     }
 
@@ -299,7 +299,7 @@ impl Layout {
 
     /// Chooses the column of time, and its dates.
     fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
-        let cells = head.first();
+        let cells = head.first_row();
         let first = |index: usize| cells.get(index).copied().unwrap_or_default();
         let is_number = |index: usize| parse_cell(first(index), head.separator).number().is_some();
         let stamp = |index: usize| Stamp::parse(first(index));
@@ -355,10 +355,10 @@ impl Layout {
             let names = channels.map(|channel| channel.accepted_names());
             Err(Problem::NoColumn { line, wanted, accepted: names.join(" or "), columns: self.names() })
         };
-        if self.rudder().is_none() {
+        if self.rudder_column().is_none() {
             return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
         }
-        if self.index(Channel::Heading).is_none() && self.index(Channel::YawRate).is_none() {
+        if self.column_of(Channel::Heading).is_none() && self.column_of(Channel::YawRate).is_none() {
             let is_course = |column: &&RawColumn| column.claims(|meaning| meaning == ColumnMeaning::Course);
             return match self.columns.iter().find(is_course) {
                 Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),

@@ -23,7 +23,7 @@ use crate::clock::{Clock, SECONDS_PER_DAY};
 use crate::encoding::Encoding;
 use crate::file::display_path;
 use crate::plausibility;
-use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
+use crate::record::{Columns, RecordOrigin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarError, SidecarProblem};
 use crate::sidecar_keys::RudderKeys;
 
@@ -253,14 +253,14 @@ impl Log {
         // Two parts of the same file are two records.
         let part_hash = |[from, until]: [f64; 2]| joined_hash(&sha256, &format!("{from} {until}"));
         let sha256 = part.map(part_hash).unwrap_or(sha256);
-        let origin = Origin::Measured { file: path.display().to_string(), sha256 };
+        let origin = RecordOrigin::Measured { file: path.display().to_string(), sha256 };
         let mut trial = Trial::new(input::stem(&path), origin, columns).map_err(|error| {
             fault(match error {
                 TrialError::TooShort { needed, rows: usable } => Problem::TooShort { needed, usable, rows },
                 error => Problem::Record(error),
             })
         })?;
-        if trial.heading_from_yaw_rate() {
+        if trial.is_heading_integrated() {
             let text = "there is no heading; the integral of the yaw rate, from zero, is used instead";
             warnings.push(WarningCode::HeadingFromYawRate.warning(text));
         }

@@ -35,9 +35,9 @@ pub(super) use can::{is_log as is_can_log, is_python_can};
 /// Format of the lines of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum MessageFormat {
-    /// NMEA 2000.
+    /// NMEA 2000 messages in the notation of canboat.
     Canboat,
-    /// Time, path, value, source.
+    /// Table of time, path, value and source, one value per line.
     Long,
 }
 

@@ -8,7 +8,7 @@ use ship::angle::{DEGREE, unwrap_heading};
 use super::error::Problem;
 use super::layout::{Content, Layout};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
-use crate::cells::{Cell, Separator, parse_cell};
+use crate::cells::{CellContent, Separator, parse_cell};
 use crate::channel::Channel;
 use crate::cleaning::is_sentinel;
 use crate::clock::{Stamp, StampConverter, StampFault};
@@ -75,14 +75,14 @@ pub(super) struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     pub fn new(layout: Layout, separator: Separator, sidecar: &'a Sidecar) -> Self {
-        let main = [layout.rudder(), layout.index(Channel::Heading), layout.index(Channel::YawRate)];
+        let main = [layout.rudder_column(), layout.column_of(Channel::Heading), layout.column_of(Channel::YawRate)];
         let mut wanted: Vec<usize> = main.into_iter().flatten().collect();
         if wanted.is_empty() {
             // A table with other channels of a record.
             let is_channel = |&place: &usize| matches!(layout.columns[place].content, Content::Channel(..));
             wanted.extend((0..layout.columns.len()).filter(is_channel));
         }
-        let time_place = layout.time();
+        let time_place = layout.time_column();
         let stamped = time_place.is_some_and(|place| layout.columns[place].content == Content::Stamp);
         Self {
             separator,
@@ -90,8 +90,8 @@ impl<'a> Rows<'a> {
             part: sidecar.used_interval(),
             every: sidecar.part.every.unwrap_or(1),
             time_place,
-            date_place: layout.date(),
-            heading_place: layout.index(Channel::Heading),
+            date_place: layout.date_column(),
+            heading_place: layout.column_of(Channel::Heading),
             wanted,
             stamps: stamped.then(StampConverter::default),
             whole_seconds: true,
@@ -193,7 +193,7 @@ impl<'a> Rows<'a> {
         let no_stamp =
             || Problem::NotAStamp { line: number, column: self.layout.columns[place].name.clone(), value: value() };
         let (Some(stamp), Some(stamps)) = (read, &mut self.stamps) else {
-            let missing = parse_cell(time_cell, self.separator) == Cell::Missing;
+            let missing = parse_cell(time_cell, self.separator) == CellContent::Missing;
             return if missing { Ok(f64::NAN) } else { Err(no_stamp()) };
         };
         self.whole_seconds &= !stamp.has_fraction();
@@ -223,32 +223,32 @@ impl<'a> Rows<'a> {
                 Content::Stamp | Content::Date | Content::Ignored => continue,
             };
             let read = match parse_cell(text, self.separator) {
-                Cell::Text => side(text, channel, self.separator).map_or(Cell::Text, Cell::Number),
+                CellContent::Text => side(text, channel, self.separator).map_or(CellContent::Text, CellContent::Number),
                 read => read,
             };
-            if let (Cell::Text, Content::Unknown, Some(sign)) = (read, column.content, side_word(text)) {
+            if let (CellContent::Text, Content::Unknown, Some(sign)) = (read, column.content, side_word(text)) {
                 column.sides += 1;
                 self.row[place] = sign;
                 continue;
             }
-            self.counts.decimal_commas += usize::from(matches!(read, Cell::CommaNumber(_)));
+            self.counts.decimal_commas += usize::from(matches!(read, CellContent::CommaNumber(_)));
             self.row[place] = match read {
-                Cell::Number(value) | Cell::CommaNumber(value)
+                CellContent::Number(value) | CellContent::CommaNumber(value)
                     if checked && channel.is_some_and(|channel| is_sentinel(channel, value, column.last)) =>
                 {
                     column.sentinels = (column.sentinels.0 + 1, value);
                     f64::NAN
                 }
-                Cell::Number(value) | Cell::CommaNumber(value) => {
+                CellContent::Number(value) | CellContent::CommaNumber(value) => {
                     column.count(value);
                     (value - column.zero) * factor
                 }
-                Cell::Missing => f64::NAN,
-                Cell::Text if column.content == Content::Unknown => {
+                CellContent::Missing => f64::NAN,
+                CellContent::Text if column.content == Content::Unknown => {
                     column.text += 1;
                     f64::NAN
                 }
-                Cell::Text => {
+                CellContent::Text => {
                     let (column, value) = (column.name.clone(), shortened(text));
                     return Err(Problem::NotANumber { line: number, column, value });
                 }

@@ -166,10 +166,10 @@ impl Rows<'_> {
             return Err(Problem::EmptyPart { from_s, until_s, first_s, last_s });
         }
         let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
-        if let Some(place) = layout.rudder().filter(is_empty) {
+        if let Some(place) = layout.rudder_column().filter(is_empty) {
             return all_missing(place, Channel::Rudder.label());
         }
-        let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.index(channel));
+        let [heading, rate] = [Channel::Heading, Channel::YawRate].map(|channel| layout.column_of(channel));
         match (heading, rate) {
             (_, Some(rate)) if !is_empty(&rate) => Ok(()),
             (Some(heading), _) if is_empty(&heading) => all_missing(heading, Channel::Heading.label()),

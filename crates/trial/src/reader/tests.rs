@@ -11,7 +11,7 @@ use ship::angle::{from_deg, to_deg};
 use super::*;
 use crate::channel::Channel;
 use crate::plausibility;
-use crate::record::Origin;
+use crate::record::RecordOrigin;
 use crate::sidecar::{Sidecar, SidecarProblem};
 
 /// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row per second, headings wrapped to 0..360.
@@ -104,7 +104,7 @@ fn a_heading_that_wraps_is_continuous_and_the_hash_is_that_of_the_bytes() {
     let reading = parse(simple()).expect("a plain table");
     let steps = reading.trial.heading().windows(2).map(|pair| to_deg(pair[1] - pair[0]).abs());
     assert!(steps.fold(0.0, f64::max) < 1.5);
-    let Origin::Measured { file, sha256 } = reading.trial.origin() else { panic!("it was read from a file") };
+    let RecordOrigin::Measured { file, sha256 } = reading.trial.origin() else { panic!("it was read from a file") };
     assert_eq!(file, "run.csv");
     use sha2::{Digest, Sha256};
     let digest: String = Sha256::digest(simple()).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -163,13 +163,13 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
         writeln!(text, "{} {rate} {}", pair[0][0], pair[0][2]).expect("a string takes all text");
     }
     let ReadRecord { trial, warnings } = parse(&text).expect("the yaw rate stands for the heading");
-    assert!(trial.heading_from_yaw_rate());
+    assert!(trial.is_heading_integrated());
     assert!(warnings[0].text.contains("integral of the yaw rate"), "{warnings:?}");
     let text = text.replacen("yaw_rate_deg_s rudder_deg", "yaw_rate_deg_s rudder_deg heading_deg", 1);
     let text = text.lines().enumerate().map(|(i, l)| if i == 0 { format!("{l}\n") } else { format!("{l} nan\n") });
     let ReadRecord { trial, warnings } =
         parse(text.collect::<String>()).expect("an empty heading column is as good as none");
-    assert!(trial.heading_from_yaw_rate());
+    assert!(trial.is_heading_integrated());
     assert!(warnings.iter().any(|warning| warning.text.contains("`heading_deg` has no value")), "{warnings:?}");
 }
 

@@ -10,7 +10,7 @@ use super::error::Problem;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
+use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, count_reversals, mean_rate, range, wraps_at_two_pi_degrees};
 use crate::wording::shortened;
 
 /// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
@@ -157,7 +157,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     }
     let rudder = rudder?;
     let ratio = range(values) / range(&rudder);
-    let [least, largest] = if reversals(&rudder) >= 2 { ZIG_ZAG_RANGE_RATIO } else { TURN };
+    let [least, largest] = if count_reversals(&rudder) >= 2 { ZIG_ZAG_RANGE_RATIO } else { TURN };
     let fits = |ratio: f64| (least..=largest).contains(&ratio);
     match (fits(ratio), fits(ratio / degree)) {
         (true, false) => Some(Unit::Degree),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ship::Particulars;
 
-use super::{Origin, RecordedRudder, RejectedReading, Trial, TrialError, signal};
+use super::{RecordOrigin, RecordedRudder, RejectedReading, Trial, TrialError, signal};
 use crate::channel::Channel;
 
 impl Trial {
@@ -40,7 +40,7 @@ impl Trial {
     pub fn with_same_rudder(
         &self,
         name: String,
-        origin: Origin,
+        origin: RecordOrigin,
         channels: BTreeMap<Channel, Vec<f64>>,
     ) -> Result<Self, TrialError> {
         if let Some((&channel, values)) = channels.iter().find(|(_, values)| values.len() != self.len()) {
@@ -63,12 +63,12 @@ impl Trial {
     /// or a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
     pub fn scaled_to(&self, particulars: Particulars) -> Option<Self> {
         let ship = self.particulars?;
-        let second = ship.factor_to(particulars, [1, 0]);
-        let metre = ship.factor_to(particulars, [0, 1]);
+        let second = ship.similarity_factor_to(particulars, [1, 0]);
+        let metre = ship.similarity_factor_to(particulars, [0, 1]);
         if ![second, metre].iter().all(|factor| factor.is_finite() && *factor > 0.0) {
             return None;
         }
-        let factor = |channel: Channel| ship.factor_to(particulars, channel.dimension());
+        let factor = |channel: Channel| ship.similarity_factor_to(particulars, channel.dimension());
         let times = self.time().iter().map(|time| time * second).collect();
         let mut scaled = self.clone();
         scaled.rudder = Arc::new(RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?));

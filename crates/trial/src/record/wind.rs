@@ -50,7 +50,7 @@ impl Trial {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Columns, Origin};
+    use crate::record::{Columns, RecordOrigin};
 
     /// A true wind of 5 m/s from 0.7 rad on a ship that turns at 2 m/s: relative and true wind follow from each other.
     #[test]
@@ -65,7 +65,7 @@ mod tests {
         let trial_in = |wind: [(Channel, Vec<f64>); 2]| {
             let channels = ship.clone().into_iter().chain(wind).collect();
             let columns = Columns { time: rows.clone(), channels, unknown: Vec::new() };
-            let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
+            let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
             Trial::new("run", origin, columns).expect("a record")
         };
         let from_true =

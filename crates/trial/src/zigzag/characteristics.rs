@@ -67,7 +67,7 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let largest_rate_of_swings = heading.largest_rate(executes[0].time.value, end);
     let middle = middle_course(&executes);
     let first = rudder
-        .first()
+        .first_movement()
         .filter(|movement| starts_straight(movement.start.value, &heading, &executes, middle, largest_rate_of_swings));
     let base_course = match &first {
         None => BaseCourse { heading: middle, source: BaseCourseSource::Executes },

@@ -104,7 +104,7 @@ impl<'a> RudderMovements<'a> {
     }
 
     /// Movement into the first hold from the steering before it; `None` if the record starts in the hold.
-    pub fn first(&self) -> Option<Movement> {
+    pub fn first_movement(&self) -> Option<Movement> {
         let to = &self.holds[0];
         if to.first == 0 {
             return None;
@@ -256,7 +256,7 @@ mod tests {
     fn starts(time: &[f64], rudder: &[f64]) -> Vec<Quantity> {
         let holds = holds(rudder).expect("two reversals");
         let rudder = RudderMovements::new(time, rudder, &holds, None);
-        let first = rudder.first().expect("starts before the hold").start;
+        let first = rudder.first_movement().expect("starts before the hold").start;
         std::iter::once(first).chain((1..holds.len()).map(|index| rudder.reversal(index).start)).collect()
     }
 

@@ -14,7 +14,7 @@ use document::Quantity;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ZigZagError {
-    /// Rudder that is never laid.
+    /// Rudder that stays near amidships in the whole record.
     #[error("not a zig-zag: the largest rudder angle is {largest_deg:.2} deg, a zig-zag needs {needed_deg:.1} deg")]
     NoRudder { largest_deg: f64, needed_deg: f64 },
     /// Too few movements of the rudder from one side to the opposite side.

@@ -109,12 +109,12 @@ impl Heading {
         WIDENINGS.iter().find_map(|widening| Cubic::fit(&self.time, &self.relative, t, widening * half_width))
     }
 
-    /// Heading at time `t` relative to the origin.
+    /// Heading at time `t` relative to the origin, rad; `None` in a long gap.
     pub fn heading_at(&self, t: f64) -> Option<Quantity> {
         Some(self.local(t, self.half_width)?.value_at(t, self.noise_sd))
     }
 
-    /// Yaw rate at time `t`, rad/s.
+    /// Yaw rate at time `t`, rad/s; `None` in a long gap.
     pub fn rate_at(&self, t: f64) -> Option<Quantity> {
         Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise_sd))
     }

@@ -68,7 +68,7 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f6
 /// Changes of sign of the heading, close ones merged: time (s), and +1 for a passage to starboard.
 fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
     // Crossings within a twelfth of the period are merged: 10 s for a ship with a period of 120 s.
-    let mut halves: Vec<f64> = departures(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut halves: Vec<f64> = departure_times(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
     let merge = median(&mut halves).map_or(0.0, |half| half / 6.0);
     let mut changes: Vec<(f64, f64)> = Vec::new();
     let mut last: Option<(f64, f64)> = None;
@@ -91,7 +91,7 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
 
 /// Times, s, at which a heading (rad, measured from the base course) departs to the opposite side by 0.35 of its
 /// maximum absolute value: one for every swing, because noise about zero is smaller.
-pub fn departures(time: &[f64], heading: &[f64]) -> Vec<f64> {
+pub fn departure_times(time: &[f64], heading: &[f64]) -> Vec<f64> {
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let mut side = 0.0;
     let mut departures = Vec::new();

@@ -119,7 +119,7 @@ fn only_who_names_effects_is_asked_for_one() {
 #[test]
 fn what_is_stored_is_read_back() {
     let results = &*RESULTS;
-    let json = results.json().expect("numbers");
+    let json = results.to_json().expect("numbers");
     assert_eq!(serde_json::from_str::<BenchDocument>(&json).expect("its own file"), *results);
     assert_eq!(json.lines().filter(|line| line.contains("\"answers\"")).count(), results.cases.len());
 }

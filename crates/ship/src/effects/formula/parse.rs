@@ -66,7 +66,7 @@ impl FormulaParser {
             return Err(self.error(at, "a control character"));
         }
         if is_moment {
-            self.signal(FormulaSignal::Gain)?;
+            self.signal(FormulaSignal::KOverT)?;
         }
         self.sum()?;
         match self.peek() {

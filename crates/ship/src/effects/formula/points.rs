@@ -12,7 +12,7 @@ pub(super) struct SignalScales {
     propeller: f64,
     duration: f64,
     wind: f64,
-    gain: f64,
+    K_over_T: f64,
     pub(super) length: f64,
     lateral_way: f64,
 }
@@ -26,7 +26,7 @@ impl SignalScales {
             propeller: 1.0,
             duration: 1.0,
             wind: 1.0,
-            gain: 1.0,
+            K_over_T: 1.0,
             length: 1.0,
             lateral_way: 1.0,
         }
@@ -42,7 +42,7 @@ impl SignalScales {
             propeller: records.propeller.unwrap_or(1.0),
             duration: records.duration,
             wind: records.wind_square.unwrap_or(1.0).sqrt(),
-            gain: records.time.powi(-2),
+            K_over_T: records.time.powi(-2),
             length: records.time * speed,
             lateral_way: 3.0 * records.rudder * records.time * way_speed(records),
         }
@@ -114,7 +114,7 @@ impl SignalPoint {
             FormulaSignal::PrimeSway => 0.15 * v / speed,
             FormulaSignal::SpeedRatio => speed,
             FormulaSignal::Start => 0.0,
-            FormulaSignal::Gain => scales.gain / (second * second),
+            FormulaSignal::KOverT => scales.K_over_T / (second * second),
         }
     }
 }

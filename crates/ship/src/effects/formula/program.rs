@@ -7,8 +7,10 @@ use crate::dynamics::{MeasuredChannels, Regressor};
 use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
-/// Capacity of the stack, in values, and the capacity that suffices for most formulas (also in signals).
+/// Capacity of the stack, in values.
 pub(super) const STACK_SIZE: usize = 16;
+
+/// Stack capacity and number of signals that suffice for most formulas.
 const SMALL_STACK: usize = 3;
 
 /// Signal that a formula can name. Units and signs as in NOTATION.md.
@@ -46,7 +48,7 @@ pub enum FormulaSignal {
     /// `start`, time of the first row, s.
     Start,
     /// `K_over_T`, K/T of the ship, 1/s²: the factor from an equivalent rudder angle to a yaw acceleration.
-    Gain,
+    KOverT,
 }
 
 /// Record constants of a formula: the signal that uses it, its neutral value and its dimension.
@@ -80,7 +82,7 @@ impl FormulaSignal {
         ("vp", Self::PrimeSway),
         ("q", Self::SpeedRatio),
         ("start", Self::Start),
-        ("K_over_T", Self::Gain),
+        ("K_over_T", Self::KOverT),
     ];
 
     /// Measured channels that the signal requires.
@@ -122,7 +124,7 @@ impl FormulaSignal {
             Self::PrimeSway => R::from(value(sway) / value(speed)),
             Self::SpeedRatio => R::from(speed.map_or(1.0, |speed| speed / approach_speed)),
             Self::Start => R::from(start),
-            Self::Gain => now.gain,
+            Self::KOverT => now.K_over_T,
         }
     }
 }

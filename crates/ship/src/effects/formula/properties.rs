@@ -21,7 +21,7 @@ impl Formula {
 
     /// Moment as equivalent rudder angle, rad.
     fn moment(&self, constants: &[f64], point: &SignalPoint) -> f64 {
-        self.value_at(constants, point) / point.signal(FormulaSignal::Gain)
+        self.value_at(constants, point) / point.signal(FormulaSignal::KOverT)
     }
 
     /// For every constant, `true` if it is a size: the moment is proportional to it.
@@ -178,7 +178,7 @@ impl Formula {
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {
             if !self.is_size[place] {
-                return Prior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).shape();
+                return Prior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).as_shape();
             }
             let alone = self.with_size(Some(place), &shapes);
             let square = SignalPoint::all(&scales).map(|point| self.moment(&alone, &point).powi(2)).sum::<f64>();

@@ -169,8 +169,8 @@ fn the_formula_of_a_user_is_a_moment_as_an_angle_of_the_rudder() {
         heading: 0.3,
         yaw_rate: 0.02,
         rudder: 0.2,
-        inverse_time: 0.05,
-        gain: 0.004,
+        inverse_T: 0.05,
+        K_over_T: 0.004,
         measured: &measured,
     };
     let acceleration = |line: &str, now: &OperatingPoint| {

@@ -6,27 +6,27 @@ use estimation::number::Real;
 
 /// Equations of the rows, re-derived by hand: the acting rudder, or the yaw acceleration.
 fn by_hand<R: Real>(id: &str, form: &str, p: &[R], now: &OperatingPoint<R>) -> R {
-    let OperatingPoint { rudder, gain, yaw_rate: r, measured, .. } = *now;
+    let OperatingPoint { rudder, K_over_T, yaw_rate: r, measured, .. } = *now;
     match (id, form) {
         ("nonlinear_damping", "r³") => -p[0] * r * r * r,
         ("nonlinear_damping", "r|r|") => -p[0] * r * r.abs(),
         ("nonlinear_damping", "r²") => -p[0] * r * r,
         ("wind_moment", "steady wind") => {
             let (sin, cos) = (now.heading * 2.0).sin_cos();
-            gain * (p[0] * cos + p[1] * sin)
+            K_over_T * (p[0] * cos + p[1] * sin)
         }
         ("wind_moment", "measured wind") => {
             let (speed, from) = (measured.wind_speed.expect("measured"), measured.wind_from.expect("measured"));
-            gain * p[0] * speed * speed * from.sin()
+            K_over_T * p[0] * speed * speed * from.sin()
         }
         ("rudder_saturation", _) => rudder - p[0] * rudder * rudder * rudder,
         ("rudder_deadband", "dead band") => (rudder.abs() - p[0].at_least(0.0)).at_least(0.0) * rudder.value().signum(),
         ("port_starboard_asymmetry", "gain by side") => rudder + p[0] * rudder.abs(),
-        ("port_starboard_asymmetry", "moment by drift") => gain * p[0] * r.abs(),
-        ("moment_drift", _) => gain * p[0] * (now.t - 3.25),
+        ("port_starboard_asymmetry", "moment by drift") => K_over_T * p[0] * r.abs(),
+        ("moment_drift", _) => K_over_T * p[0] * (now.t - 3.25),
         ("sway_coupling_measured", _) => {
             let ratio = measured.speed.map_or(1.0, |speed| speed / 7.3);
-            gain * p[0] * (ratio * measured.sway.expect("measured"))
+            K_over_T * p[0] * (ratio * measured.sway.expect("measured"))
         }
         _ => panic!("{id} ({form}) is not written by hand"),
     }
@@ -70,8 +70,8 @@ fn rows_are_their_equations_to_the_last_bit() {
                 heading: variable(0, 1.0),
                 yaw_rate: variable(1, 0.03),
                 rudder: variable(2, 0.6),
-                inverse_time: variable(3, 0.1),
-                gain: variable(3, 0.01),
+                inverse_T: variable(3, 0.1),
+                K_over_T: variable(3, 0.01),
                 measured: &measured,
             };
             let p = [variable(4, 2.0 * parameters[0].typical), variable(5, 0.03)];

@@ -1,7 +1,6 @@
 //! Parameters of an MMG hull, with the symbols of the literature; values are in [`crate::ships`].
 //!
 //! Source: Yasukawa and Yoshimura (2015), Journal of Marine Science and Technology 20:37-52.
-#![expect(non_snake_case, reason = "Yv is a derivative of the force Y, AR an area; names are those of the literature")]
 
 use estimation::number::Real;
 

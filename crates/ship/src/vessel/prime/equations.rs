@@ -90,30 +90,30 @@ pub enum CalmHull<R = f64> {
 }
 
 impl<R: Real> PrimeHull<R> {
-    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate relative to the approach,
-    /// yaw disturbance as equivalent rudder angle at approach speed (rad), and wind per unit of Y_w
+    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate over that of the approach
+    /// (`n_ratio`), yaw disturbance as equivalent rudder angle at approach speed (rad), and wind per unit of Y_w
     /// ([`wind_accelerations`](super::wind_accelerations)).
     #[inline]
-    pub fn accelerations(&self, state: [R; 3], rudder: R, turning: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
-        let calm = self.in_calm.accelerations(state, rudder, turning, disturbance);
+    pub fn accelerations(&self, state: [R; 3], rudder: R, n_ratio: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
+        let calm = self.in_calm.accelerations(state, rudder, n_ratio, disturbance);
         std::array::from_fn(|axis| calm[axis] + self.windage * wind[axis])
     }
 }
 
 impl<R: Real> CalmHull<R> {
-    /// Accelerations without wind.
+    /// Accelerations as in [`PrimeHull::accelerations`], without wind.
     #[inline]
-    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, turning: f64, disturbance: f64) -> [R; 3] {
+    pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, n_ratio: f64, disturbance: f64) -> [R; 3] {
         let [u, v, r] = [limited(u, MIN_SURGE), limited(v, -MAX_PRIME_SPEED), limited(r, -MAX_PRIME_SPEED)];
         match self {
-            Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, turning, disturbance),
+            Self::Mmg(hull, bias) => hull.accelerations([u, v, r], rudder + *bias, n_ratio, disturbance),
             Self::Quadratic(p) => {
-                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
+                let [surge, sway, yaw] = common(p, [u, v, r], rudder, n_ratio, disturbance);
                 let (vv, rr) = (v * v.abs(), r * r.abs());
                 [surge, sway + p[16] * vv + p[17] * rr, yaw + p[14] * rr + p[15] * vv]
             }
             Self::Cubic(p) => {
-                let [surge, sway, yaw] = common(p, [u, v, r], rudder, turning, disturbance);
+                let [surge, sway, yaw] = common(p, [u, v, r], rudder, n_ratio, disturbance);
                 let (vv, vr, rr) = (v * v / u, v * r / u, r * r / u);
                 [
                     surge,

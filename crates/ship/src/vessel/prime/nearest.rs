@@ -22,11 +22,16 @@ use crate::vessel::prior::HullPrior;
 /// Factor f on the standard deviations of the formulas.
 const SPREAD_FACTOR: f64 = 1.6;
 
-/// States of zig-zags and circles: surge, curvature r L/u, drift relative to the turn, v/u + 0.35 r L/u, and rudder
-/// (rad).
+/// Surge velocities u of the states of zig-zags and circles, in U.
 const SURGES: [f64; 3] = [1.0, 0.8, 0.6];
+
+/// Curvatures r L/u of the states.
 const CURVATURES: [f64; 5] = [-0.8, -0.4, 0.0, 0.4, 0.8];
+
+/// Drifts of the states relative to the turn, v/u + 0.35 r L/u.
 const DRIFTS: [f64; 4] = [-0.12, -0.04, 0.04, 0.12];
+
+/// Rudder angles of the states, rad.
 const RUDDERS: [f64; 3] = [-0.6, 0.0, 0.6];
 
 /// Position of the pivot point of a turn ahead of midship, in L.
@@ -69,7 +74,7 @@ fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialL
     ])
 }
 
-/// States: surge, sway, yaw rate, and rudder.
+/// States of zig-zags and circles: surge, sway and yaw rate in units of L and U, and rudder angle, rad.
 fn states() -> impl Iterator<Item = ([f64; 3], f64)> {
     let velocity = |(u, curvature, drift): (f64, f64, f64)| [u, u * (drift - PIVOT * curvature), u * curvature];
     SURGES.into_iter().flat_map(move |u| {

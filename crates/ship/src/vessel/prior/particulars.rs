@@ -1,5 +1,4 @@
 //! Particulars of a ship: keys and units, valid ranges, and typical ratios that replace missing particulars.
-#![expect(non_snake_case, reason = "L, B, AR and the like are the symbols of naval architecture")]
 
 use thiserror::Error;
 
@@ -40,7 +39,7 @@ const TONNE: f64 = 1000.0;
 pub struct Particular {
     /// Key, which ends in the unit.
     pub key: &'static str,
-    /// Symbol.
+    /// Symbol in formulas, such as L or C_b.
     pub symbol: &'static str,
     /// Unit; "1" for a nondimensional particular.
     pub unit: &'static str,
@@ -223,7 +222,7 @@ pub struct ParticularsError {
     pub key: &'static str,
     /// Quantity, with the keys that give it.
     pub quantity: String,
-    /// Value.
+    /// Rejected value.
     pub value: f64,
     /// Range of ships.
     pub range: [f64; 2],
@@ -269,7 +268,7 @@ impl HullParticulars {
     }
 
     /// `true` if any particular other than length and speed is given.
-    pub fn has_hull_dimensions(&self) -> bool {
+    pub fn has_more_than_length_and_speed(&self) -> bool {
         *self != Self { length: self.length, speed: self.speed, ..Self::default() }
     }
 

@@ -15,7 +15,7 @@ const SPEED: f64 = 1.2;
 const TRUTH: [f64; COEFFICIENT_COUNT] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
 
 fn planar() -> Planar {
-    Planar::new(PlanarCoefficients::from_array(TRUTH), LENGTH, SPEED).expect("a ship")
+    Planar::new(PlanarCoefficients::clamped_from_array(TRUTH), LENGTH, SPEED).expect("a ship")
 }
 
 /// Rudder signal: successive angles from 3 s on, each held for `hold` s, with 15°/s between them.
@@ -119,9 +119,9 @@ fn states_steps_and_memory_of_the_response_are_passed_on() {
 
 #[test]
 fn numbers_that_are_no_ship_are_refused() {
-    let coefficients = PlanarCoefficients::from_array(TRUTH);
+    let coefficients = PlanarCoefficients::clamped_from_array(TRUTH);
     for (length, speed) in [(0.0, SPEED), (LENGTH, 0.0), (f64::NAN, SPEED), (LENGTH, f64::INFINITY)] {
         assert!(Planar::new(coefficients, length, speed).is_err(), "{length} {speed}");
     }
-    assert_eq!(PlanarCoefficients::from_array([-1.0; COEFFICIENT_COUNT]).X_dv, 0.0);
+    assert_eq!(PlanarCoefficients::clamped_from_array([-1.0; COEFFICIENT_COUNT]).X_dv, 0.0);
 }

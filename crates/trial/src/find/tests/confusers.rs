@@ -2,41 +2,41 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use super::ship::Sea;
+use super::ship::SimulatedLog;
 use crate::find::{Signals, manoeuvres};
 use crate::testing::Gaussian;
 
 #[test]
 fn an_autopilot_keeps_a_straight_piece() {
-    let mut sea = Sea::new(0.5);
-    sea.keep(3600.0);
-    let spread = sea.rudder.iter().map(|x| to_deg(x.abs())).fold(0.0, f64::max);
+    let mut log = SimulatedLog::new(0.5);
+    log.keep(3600.0);
+    let spread = log.rudder.iter().map(|x| to_deg(x.abs())).fold(0.0, f64::max);
     assert!(spread > 1.0, "{spread}");
-    assert_eq!(sea.names(), ["straight"]);
+    assert_eq!(log.names(), ["straight"]);
     // Orders in steps of three degrees, as of an autopilot with a dead band.
-    let mut sea = Sea::new(0.5);
-    let base = sea.course;
+    let mut log = SimulatedLog::new(0.5);
+    let base = log.course;
     let mut order = from_deg(3.0);
     for _ in 0..7200 {
-        if (sea.course - base).abs() > from_deg(0.6) {
-            order = from_deg(3.0) * (base - sea.course).signum();
+        if (log.course - base).abs() > from_deg(0.6) {
+            order = from_deg(3.0) * (base - log.course).signum();
         }
-        sea.row(order);
+        log.row(order);
     }
-    assert_eq!(sea.names(), ["straight"]);
+    assert_eq!(log.names(), ["straight"]);
 }
 
 #[test]
 fn changes_of_course_are_nothing() {
-    let mut sea = Sea::new(0.5);
-    let mut course = sea.course;
+    let mut log = SimulatedLog::new(0.5);
+    let mut course = log.course;
     for change_deg in [20.0, -40.0, 60.0, -20.0, 30.0, -60.0, 60.0] {
-        sea.steer(course, 300.0);
+        log.steer(course, 300.0);
         course += from_deg(change_deg);
-        sea.steer(course, 60.0);
+        log.steer(course, 60.0);
     }
-    sea.steer(course, 300.0);
-    assert_eq!(sea.detected(), []);
+    log.steer(course, 300.0);
+    assert_eq!(log.detected(), []);
 }
 
 /// Random orders for random times, any angle or multiples of five degrees, of about the durations in a zig-zag. In so
@@ -46,14 +46,14 @@ fn harbour_manoeuvring_is_nothing() {
     let mut detected = Vec::new();
     for seed in 0..20 {
         for in_fives in [false, true] {
-            let mut sea = Sea::new(0.5);
-            sea.chance = Gaussian::new(seed);
+            let mut log = SimulatedLog::new(0.5);
+            log.chance = Gaussian::new(seed);
             for _ in 0..400 {
-                let (order, time) = (15.0 * sea.chance.draw(), 15.0 + 10.0 * sea.chance.draw().abs());
+                let (order, time) = (15.0 * log.chance.draw(), 15.0 + 10.0 * log.chance.draw().abs());
                 let order = if in_fives { 5.0 * (order / 5.0).round() } else { order };
-                sea.hold(from_deg(order.clamp(-35.0, 35.0)), time);
+                log.hold(from_deg(order.clamp(-35.0, 35.0)), time);
             }
-            detected.extend(sea.detected().into_iter().map(|part| (seed, in_fives, part)));
+            detected.extend(log.detected().into_iter().map(|part| (seed, in_fives, part)));
         }
     }
     assert!(detected.len() <= 3, "{} in 16 000 orders: {detected:?}", detected.len());
@@ -61,26 +61,26 @@ fn harbour_manoeuvring_is_nothing() {
 
 #[test]
 fn a_ship_that_does_not_answer_makes_no_zig_zag() {
-    let mut sea = Sea::new(0.5);
-    sea.keep(300.0);
-    sea.zig_zag(10.0, 10.0, 6);
-    sea.keep(300.0);
-    let headings = std::mem::replace(&mut sea.heading, vec![f64::NAN; sea.time.len()]);
-    assert_eq!(sea.names(), [""; 0]);
-    sea.heading = headings.iter().map(|psi| -psi).collect();
-    assert_eq!(sea.detected(), []);
+    let mut log = SimulatedLog::new(0.5);
+    log.keep(300.0);
+    log.zig_zag(10.0, 10.0, 6);
+    log.keep(300.0);
+    let headings = std::mem::replace(&mut log.heading, vec![f64::NAN; log.time.len()]);
+    assert_eq!(log.names(), [""; 0]);
+    log.heading = headings.iter().map(|psi| -psi).collect();
+    assert_eq!(log.detected(), []);
 }
 
 #[test]
 fn a_gap_of_the_log_ends_a_zig_zag() {
-    let mut sea = Sea::new(0.5);
-    sea.keep(300.0);
-    sea.zig_zag(10.0, 10.0, 4);
-    let rows = sea.time.len();
-    sea.zig_zag(10.0, 10.0, 5);
-    sea.keep(300.0);
-    sea.time[rows - 5..].iter_mut().for_each(|t| *t += 7200.0);
-    let detected = sea.detected();
+    let mut log = SimulatedLog::new(0.5);
+    log.keep(300.0);
+    log.zig_zag(10.0, 10.0, 4);
+    let rows = log.time.len();
+    log.zig_zag(10.0, 10.0, 5);
+    log.keep(300.0);
+    log.time[rows - 5..].iter_mut().for_each(|t| *t += 7200.0);
+    let detected = log.detected();
     assert!(detected.iter().all(|manoeuvre| manoeuvre.until - manoeuvre.from < 1000.0), "{detected:?}");
 }
 

@@ -1,4 +1,4 @@
-//! A helmsman and a first-order ship for the tests: T r' + r = K (δ − δ₀), stepped with the log. It shares no code with
+//! A helmsman and a first-order ship for the tests: T r' + r = K (δ − δ₀), stepped row by row. It shares no code with
 //! the search.
 
 use ship::angle::from_deg;
@@ -6,8 +6,8 @@ use ship::angle::from_deg;
 use crate::find::{DetectedManoeuvre, Signals, manoeuvres};
 use crate::testing::Gaussian;
 
-/// A simulated log of a ship under way.
-pub struct Sea {
+/// Log of a simulated ship under way, and the motion at its end.
+pub struct SimulatedLog {
     /// Time between rows, s.
     pub step: f64,
     /// Speed of the rudder, rad/s.
@@ -29,7 +29,7 @@ pub struct Sea {
     pub chance: Gaussian,
 }
 
-impl Sea {
+impl SimulatedLog {
     pub fn new(step: f64) -> Self {
         Self {
             step,
@@ -49,10 +49,10 @@ impl Sea {
         }
     }
 
-    /// A ship with `factor` times the usual time scale.
+    /// Log of a ship with `factor` times the usual time constant, and the same product KT.
     pub fn scaled(step: f64, factor: f64) -> Self {
-        let sea = Self::new(step);
-        Self { lag: sea.lag * factor, gain: sea.gain / factor, ..sea }
+        let log = Self::new(step);
+        Self { lag: log.lag * factor, gain: log.gain / factor, ..log }
     }
 
     pub fn now(&self) -> f64 {
@@ -116,7 +116,7 @@ impl Sea {
         (start, self.now() - self.step)
     }
 
-    pub fn log(&self) -> Signals<'_> {
+    pub fn signals(&self) -> Signals<'_> {
         Signals {
             time: &self.time,
             rudder: &self.rudder,
@@ -128,11 +128,11 @@ impl Sea {
 
     /// The manoeuvres except the straight pieces.
     pub fn detected(&self) -> Vec<DetectedManoeuvre> {
-        manoeuvres(&self.log()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
+        manoeuvres(&self.signals()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
     }
 
     /// Names of all detected manoeuvres.
     pub fn names(&self) -> Vec<String> {
-        manoeuvres(&self.log()).iter().map(|manoeuvre| manoeuvre.name()).collect()
+        manoeuvres(&self.signals()).iter().map(|manoeuvre| manoeuvre.name()).collect()
     }
 }

@@ -51,7 +51,7 @@ fn is_numeric(class: u32) -> bool {
 fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, NonColumnVariable>> {
     let mut scan = ByteCursor { tail: bytes, big_endian };
     let (_, flag_bytes) = scan.element()?;
-    let (class, complex) = flags(ByteCursor { tail: flag_bytes, big_endian }.word()?);
+    let (class, complex) = flags(ByteCursor { tail: flag_bytes, big_endian }.read_u32()?);
     if !is_numeric(class) {
         let name = scan.element().and_then(|_| scan.element()).map(|(_, name)| String::from_utf8_lossy(name));
         let name = name.map_or_else(String::new, |name| name.into_owned());
@@ -60,7 +60,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, NonColumn
     let mut sizes = ByteCursor { tail: scan.element()?.1, big_endian };
     let mut dimensions = Vec::new();
     while !sizes.tail.is_empty() {
-        dimensions.push(usize::try_from(sizes.word()?).ok()?);
+        dimensions.push(usize::try_from(sizes.read_u32()?).ok()?);
     }
     let name = String::from_utf8_lossy(scan.element()?.1).into_owned();
     let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
@@ -85,9 +85,9 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
         result.map(|_| *left).map_err(|_| damaged("a variable cannot be unpacked"))
     };
     read(&mut bytes, FLAGS_END_BYTES as u64)?;
-    let flag_word = bytes.get(16..20).and_then(|word| ByteCursor { tail: word, big_endian }.word());
+    let flag_word = bytes.get(16..20).and_then(|word| ByteCursor { tail: word, big_endian }.read_u32());
     if flag_word.is_some_and(|word| is_numeric(flags(word).0)) {
-        let length = ByteCursor { tail: &bytes[4..], big_endian }.word().unwrap_or(0);
+        let length = ByteCursor { tail: &bytes[4..], big_endian }.read_u32().unwrap_or(0);
         let remaining = (u64::from(length) + 8).saturating_sub(FLAGS_END_BYTES as u64);
         if read(&mut bytes, remaining.min(MAX_UNPACKED_BYTES))? == 0 {
             return Err(FileError::TooLarge { kind: RECORD_FILE, size: None }.into());
@@ -117,7 +117,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
         };
         let mut inner = ByteCursor { tail: &unpacked, big_endian };
         let content = match kind {
-            COMPRESSED => inner.word().zip(inner.word()).filter(|(kind, _)| *kind == MATRIX).map(|_| inner.tail),
+            COMPRESSED => inner.read_u32().zip(inner.read_u32()).filter(|pair| pair.0 == MATRIX).map(|_| inner.tail),
             _ => Some(data),
         };
         match content.and_then(|content| variable(content, big_endian)).ok_or_else(contradiction)? {

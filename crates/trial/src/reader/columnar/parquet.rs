@@ -43,7 +43,7 @@ fn fits(PageHead { is_dictionary, unpacked, packed, values }: PageHead) -> bool 
 /// Meaning of the values of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Meaning {
-    /// Number or text as in its type.
+    /// Number or text as stored, without a conversion.
     Plain,
     Unsigned,
     /// Integers in units of this decimal place.

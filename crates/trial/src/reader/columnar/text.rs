@@ -68,7 +68,8 @@ pub fn write_integer(text: &mut String, value: impl Into<i128>) {
     put(text, format_args!("{}", value.into()));
 }
 
-/// Writes a whole number of units of the decimal place `decimals`.
+/// Writes `value` · 10^(−`decimals`): as a decimal number, or with an exponent if `decimals` is 0 or 10^`decimals`
+/// exceeds 128 bits.
 pub fn write_decimal(text: &mut String, value: i128, decimals: u32) {
     let sign = if value < 0 { "-" } else { "" };
     let digits = value.unsigned_abs();

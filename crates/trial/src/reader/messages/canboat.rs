@@ -8,11 +8,15 @@ use serde_json::Value;
 use super::message::{Message, RankedReading};
 use crate::channel::Channel;
 
-/// Supported parameter group numbers.
+/// Parameter group number of the rudder.
 const RUDDER: u64 = 127_245;
+/// Parameter group number of the heading.
 const HEADING: u64 = 127_250;
+/// Parameter group number of the rate of turn.
 const RATE_OF_TURN: u64 = 127_251;
+/// Parameter group number of the speed through the water.
 const SPEED: u64 = 128_259;
+/// Parameter group number of course and speed over ground.
 const COURSE_AND_SPEED: u64 = 129_026;
 
 /// `true` for a message, in JSON or plain.

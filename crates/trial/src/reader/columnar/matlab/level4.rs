@@ -27,8 +27,8 @@ struct VariableHead {
 impl VariableHead {
     /// Head of a variable at the beginning of a byte sequence; `None` if there is none.
     fn read(scan: &mut ByteCursor) -> Option<Self> {
-        let digits = scan.word()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
-        let [rows, columns, complex, length] = [scan.word()?, scan.word()?, scan.word()?, scan.word()?];
+        let digits = scan.read_u32()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
+        let [rows, columns, complex, length] = [scan.read_u32()?, scan.read_u32()?, scan.read_u32()?, scan.read_u32()?];
         let (class, kind) = (digits % 10, *KINDS.get((digits / 10) as usize)?);
         let name = scan.take(length.min(MAX_NAME_BYTES) as usize)?.strip_suffix(&[0])?;
         let is_letter = |letter: &u8| *letter == b'_' || letter.is_ascii_alphanumeric();

@@ -65,20 +65,21 @@ impl<'a> ByteCursor<'a> {
         Some(taken)
     }
 
-    pub fn word(&mut self) -> Option<u32> {
+    /// Next 32-bit unsigned integer, in the byte order of the file; `None` if fewer than four bytes are left.
+    pub fn read_u32(&mut self) -> Option<u32> {
         let bytes = self.take(4)?.try_into().ok()?;
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
     /// Next data element: its kind and its bytes. Padding to eight bytes is skipped.
     pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
-        let tag = self.word()?;
+        let tag = self.read_u32()?;
         if tag >> 16 != 0 {
             // Short elements are in their own tag.
             let data = self.take(4)?;
             return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
         }
-        let length = self.word()? as usize;
+        let length = self.read_u32()? as usize;
         let data = self.take(length)?;
         if tag != COMPRESSED {
             let filling = (8 - length % 8) % 8;

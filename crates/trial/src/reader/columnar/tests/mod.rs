@@ -11,7 +11,7 @@ use std::io::{Read, Write};
 use crate::reader::lines::sha256;
 use crate::reader::tests::{parse, parse_with, rows, simple};
 use crate::reader::{ReadError, ReadRecord, read};
-use crate::record::Origin;
+use crate::record::RecordOrigin;
 
 /// Time, heading and rudder of the rows of the plainest table.
 fn columns() -> [Vec<f64>; 3] {
@@ -39,7 +39,7 @@ fn assert_plain(bytes: &[u8]) -> ReadRecord {
 }
 
 fn hash(reading: &ReadRecord) -> &str {
-    let Origin::Measured { sha256, .. } = reading.trial.origin() else { panic!("it was read from a file") };
+    let RecordOrigin::Measured { sha256, .. } = reading.trial.origin() else { panic!("it was read from a file") };
     sha256
 }
 
