@@ -31,11 +31,12 @@ HEAD = "# Results\n"
 STUDIES = """
 ## Studies
 
-Each section is a study: its question, its result, and the figure that shows the result. The name leads to the whole
-report. The folder of a study also holds every figure with its 95 % interval as CSV and LaTeX, and a manifest. Rows are
-not stored: `study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that the
-section gives. A study of measured records needs their folder in `KEMPF_DATA`. A study that asks other programs is run
-from its scenario.
+Each section is a study: its question, its result, and the figure that shows the result. The studies behind the answers
+above come first, in the same order; the others follow by name. The name leads to the whole report. The folder of a
+study also contains every number with its 95 % interval as CSV and LaTeX, and a manifest. Rows are not stored:
+`study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that the section
+gives. A study of measured records needs their folder in `KEMPF_DATA`. The study `outside` also has answers of
+[estimators outside Kempf](../examples/external/README.md), which the manifest does not contain.
 """
 
 
@@ -267,7 +268,9 @@ def write_page(plan, scenarios, place):
         links = ", ".join(f"[{name}]({reports[name]})" for name in own["studies"])
         text += f"\n**{own['question']}**\n\n" + in_lines(f"{own['answer']}({links})") + "\n"
     text += STUDIES
-    for words, report, figure in entries:
+    order = [name for own in plan["question"] for name in own["studies"]]
+    order += sorted(reports.keys() - set(order))
+    for words, report, figure in sorted(entries, key=lambda entry: order.index(entry[0]["name"])):
         name, finding = words["name"], in_short(words.get("finding", ""))
         for file in filter(None, (report, figure)):
             if not (PUBLISHED / name / file).is_file():
