@@ -3,11 +3,11 @@
 use ship::angle::{from_deg, to_deg};
 
 use trial::zigzag::{BaseCourseSource, Side, ZigZag, ZigZagError};
-use trial::{Origin, Trial};
+use trial::{RecordOrigin, Trial};
 
 /// A measured record; `None` if the data are not there.
 fn measured(file: &str) -> Option<Trial> {
-    let origin = Origin::Measured { file: file.into(), sha256: String::new() };
+    let origin = RecordOrigin::Measured { file: file.into(), sha256: String::new() };
     Some(Trial::new(file, origin, kempf_tests::measured::columns(file)?).expect("consistent columns"))
 }
 

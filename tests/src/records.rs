@@ -161,7 +161,7 @@ pub fn straight_run(rows: usize) -> Trial {
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let heading = time.iter().map(|t| 0.3 + from_deg(0.05) * (0.7 * t).sin()).collect();
     let channels = [(Channel::Heading, heading), (Channel::Rudder, vec![0.0; rows])].into();
-    let origin = trial::Origin::Simulated { scenario: "straight run".into(), cell: 0, replicate: 0 };
+    let origin = trial::RecordOrigin::Simulated { scenario: "straight run".into(), cell: 0, replicate: 0 };
     Trial::new("straight run", origin, Columns { time, channels, unknown: Vec::new() })
         .expect("a straight run is a record")
 }

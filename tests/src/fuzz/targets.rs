@@ -288,7 +288,7 @@ fn worked_out(formula: &Formula) {
 
 fn acceleration<R: EffectReal>(formula: &Formula, values: &[f64], size: f64, measured: &MeasuredChannels) -> R {
     let (heading, rudder, yaw_rate, one) = (R::from(size), R::from(-size), R::from(size), R::from(1.0));
-    let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_time: one, gain: one, measured };
+    let now = OperatingPoint { t: size, heading, yaw_rate, rudder, inverse_T: one, K_over_T: one, measured };
     let values: Vec<R> = values.iter().map(|&value| R::from(value)).collect();
     R::effect_equations(formula).yaw_acceleration(&values, &[], &now)
 }

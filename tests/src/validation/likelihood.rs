@@ -8,7 +8,7 @@ use ship::angle::from_deg;
 use ship::first_order::State;
 use simulate::{Simulation, StreamKey};
 use trial::noise_model::{MomentKind, NoiseModel};
-use trial::{Channel, Columns, Origin, Trial};
+use trial::{Channel, Columns, RecordOrigin, Trial};
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::Case;
@@ -24,7 +24,7 @@ fn uneven() -> Trial {
     let heading =
         time.iter().map(|&t| from_deg(8.0) * wave(t - 9.0) + from_deg(0.05) * (5.1 * t + 1.0).cos()).collect();
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
-    let origin = Origin::Simulated { scenario: String::from("uneven"), cell: 0, replicate: 0 };
+    let origin = RecordOrigin::Simulated { scenario: String::from("uneven"), cell: 0, replicate: 0 };
     Trial::new("uneven", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 
