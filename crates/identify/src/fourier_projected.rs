@@ -133,7 +133,7 @@ pub struct FourierProjected {
 pub struct Curves {
     /// Heading curve.
     pub heading: FittedSeries,
-    /// Rudder curve; [`FourierSeries::heading`] gives the projected rudder angle, rad.
+    /// Rudder curve; [`FourierSeries::heading_at`] gives the projected rudder angle, rad.
     pub rudder: FourierSeries,
     /// Beginning and end, s from the first observed row.
     pub window: [f64; 2],
