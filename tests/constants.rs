@@ -79,7 +79,9 @@ fn constants(text: &str) -> Vec<Constant> {
 /// The whole page.
 fn page() -> String {
     let mut page = format!(
-        "# Constants\n\nNumbers that were chosen and stand in the source, where a setting does not change them. Made by `{COMMAND}`.\n"
+        "# Constants\n\nThis page is for readers of the source. It lists the numbers that were chosen and that no setting changes; *file* \
+         and *constant* say where they stand. [Methodology](../../../METHODOLOGY.md) says where they are used, and \
+         [Choices](choices.md) what other values change. Made by `{COMMAND}`.\n"
     );
     for (folder, heading) in FOLDERS {
         page += &format!("\n## {heading}\n\n| file | constant | value | what it is |\n|---|---|---:|---|\n");

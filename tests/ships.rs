@@ -118,7 +118,7 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
     let particulars = Particulars { length: 160.93, speed: 7.7175 };
     let cargo_ship = SimulatedShip::from_dynamics(Arc::new(Abkowitz::new(particulars, derivatives)));
     vessels.push(("mariner, evened".into(), cargo_ship, from_deg(5.0), 20.9));
-    let tanker = SimulatedShip::from_dynamics(Arc::new(tanker::equations().without_thrust_asymmetry()));
+    let tanker = SimulatedShip::from_dynamics(Arc::new(tanker::hull_model().without_thrust_asymmetry()));
     vessels.push(("tanker, evened".into(), tanker, from_deg(2.33), 37.0));
     for (name, parameters, speed, rate_deg, unit) in [
         ("kvlcc2, evened", kvlcc2::FULL_SCALE, 7.97, 2.32, 40.1),

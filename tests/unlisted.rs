@@ -99,7 +99,7 @@ fn every_ship_turns_as_its_equation_says() {
     let scenario = Scenario::parse(&path, "unlisted", text, None).unwrap_or_else(|failure| panic!("{failure}"));
     let is_first = |(_, cell): &(usize, &DesignCell)| cell.values[1] == Some(0.05);
     let (lags, others) = ([String::from("steering_lag")], scenario.cells.iter().enumerate().filter(is_first));
-    let formulas = others.filter(|(_, cell)| !cell.missing().is_empty() && cell.missing() != lags);
+    let formulas = others.filter(|(_, cell)| !cell.missing_effects().is_empty() && cell.missing_effects() != lags);
     let names: Vec<&str> = formulas.clone().map(|(_, cell)| cell.labels[0].as_str()).collect();
     assert_eq!(names, SHIPS.map(|(name, _)| name), "every formula has its equation");
     for ((cell, _), (name, moment)) in formulas.zip(SHIPS) {

@@ -56,7 +56,7 @@ impl<'a> BlockStore<'a> {
         self.folder.join(ROWS_FOLDER).join(rows_name(block))
     }
 
-    /// Rows of a block, of complete trials from its first on; empty without a file. The inner error describes a damaged
+    /// Stored rows of a block: all rows of its first trials; empty without a file. The inner error describes a damaged
     /// file.
     ///
     /// Fails if the file cannot be read, and if it is a block of another study, seed or program.
@@ -93,8 +93,8 @@ impl<'a> BlockStore<'a> {
         format!("{problem}; {advice}")
     }
 
-    /// Number of stored trials of each requested block. Warns of a damaged block and counts it as missing; `becomes`
-    /// describes what happens to its trials.
+    /// Number of stored trials of each block that `is_asked` selects and that has a file. A damaged block is omitted
+    /// with a warning, in which `becomes` states what happens to its trials.
     ///
     /// Fails if a file cannot be read, and if one is a block of another study, seed or program.
     pub fn stored_trials(

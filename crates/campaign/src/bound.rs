@@ -16,12 +16,12 @@ use coloured::CompassError;
 /// Cramér–Rao bound of all records of one trial together: standard deviations of K (1/s), T (s) and K/T (1/s²), and the
 /// covariance of the relative errors of K and T, %².
 ///
-/// The noise law includes compass, recorded rudder, rate gyro, and one random moment: a random walk or gusts. Wind,
-/// waves and drift are model errors and excluded; spikes, which only remove information, are ignored. `None` without
-/// heading noise, for two random moments at once, for a compass with white and coloured error combined with another
-/// noise, and for a record that does not determine the ship.
+/// The noise law includes compass, recorded rudder, a rate gyro without bias and scale error, and one random moment: a
+/// random walk or gusts. Wind, waves and drift are model errors and excluded; spikes, which only remove information,
+/// are ignored. `None` without heading noise, for two random moments at once, for a compass with white and coloured
+/// error combined with another noise, and for a record that does not determine the ship.
 ///
-/// The information of the records adds; each has a separate initial state.
+/// The information of the records adds up; each record has a separate initial state.
 pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[SimulatedTrial],
@@ -46,7 +46,8 @@ pub fn cramer_rao_bound<'a>(
     bound.iter().all(|sd| sd.is_finite()).then_some((bound, percent2))
 }
 
-/// Covariance bound of (1/T, K/T, K δ_r/T) for one record with unknown initial state.
+/// Covariance bound of 1/T (1/s), K/T (1/s²) and K δ_r/T (rad/s²) for one record with unknown initial state; `None` as
+/// in [`cramer_rao_bound`].
 fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstOrder) -> Option<Matrix3<f64>> {
     let white = simulation.sensors.declared_noise().heading;
     let wander = simulation.sensors.heading_wander.filter(|wander| wander.sd > 0.0);
@@ -68,12 +69,13 @@ fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstO
     })
 }
 
-/// Noise law of a simulation in terms of the first-order likelihood: its `compass` errors, and all other noise.
+/// Noise law of a simulation for the first-order likelihood: the `compass` errors and all other noise; `None` for a
+/// random walk and gusts at once.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
     let is_right = [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|size| size.unwrap_or(0.0) == 0.0);
     let read = recording.rudder == RudderSource::Feedback;
-    // A moment is expressed as the rudder angle of equal moment.
+    // The simulation states a moment as the rudder angle of equal moment, the likelihood as a yaw acceleration.
     let b = truth.K_over_T;
     let (moment, moment_level, moment_correlation) = match (disturbances.random_walk, disturbances.gusts) {
         (0.0, None) => (MomentKind::None, 0.0, f64::INFINITY),

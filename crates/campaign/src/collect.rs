@@ -29,7 +29,7 @@ use crate::store::{self, StoredStudy};
 use crate::timings::Timings;
 use crate::writer::BlockWriter;
 
-/// Target duration of a batch, s: long compared with the wait for its last trial, short compared with a second.
+/// Target duration of a batch: long compared with the wait for its last trial, short compared with a second.
 const BATCH_TIME: Duration = Duration::from_millis(250);
 
 /// Maximum number of trials in a batch, all of which are held in memory.
@@ -69,7 +69,7 @@ pub fn collect_shard(
     Ok(run(scenario, shard, folder, restart, observer)?.manifest)
 }
 
-/// Completes a study whose blocks are all in a folder, computed anywhere; a finished study is read.
+/// Completes a study whose blocks are all in a folder, wherever they were computed; a finished study is only read.
 ///
 /// Fails if blocks are missing; the message names the first.
 pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<StoredStudy, Failure> {
@@ -171,7 +171,7 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
         return Ok(stored);
     }
     if restart {
-        // The manifest is written first: rows without a manifest belong to no study.
+        // The manifest is removed first: if the program stops here, the remaining rows belong to no study.
         folder.remove_matching(|name| [files::MANIFEST_FILE, files::LEGACY_ROWS_FILE].contains(&name))?;
         block_store::discard(folder)?;
     } else if block_store::has_blocks(folder.path())? {
@@ -215,6 +215,7 @@ fn check_same_program(stored: &Manifest, current: &Manifest, folder: &Path) -> R
 
 /// Progress of a run, for messages.
 struct Progress<'a> {
+    /// Maximum number of trials, stored ones included.
     most: u64,
     /// Number of trials stored before the run.
     before: u64,
@@ -325,7 +326,7 @@ fn watched<'scope>(
         let runner = runner(scenario, &tasks);
         let run = || {
             shared_fit::fit_groups(scenario, &tasks).into_par_iter().for_each_with(send, |send, unit| {
-                if !observer.is_asked_to_stop() {
+                if !observer.should_stop() {
                     for (index, outcome) in unit.clone().zip(shared_fit::run_group(&runner, scenario, &tasks[unit])) {
                         // The receiver is dropped after the wait for a trial was given up.
                         let _ = send.send((index, outcome));
@@ -346,7 +347,7 @@ fn watched<'scope>(
                 observer.advance();
             }
             Err(RecvTimeoutError::Disconnected) => break false,
-            Err(RecvTimeoutError::Timeout) if observer.is_asked_to_stop() => {
+            Err(RecvTimeoutError::Timeout) if observer.should_stop() => {
                 if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
                     break true;
                 }

@@ -29,7 +29,7 @@ pub fn degrees(values: &[f64]) -> Vec<f64> {
     values.iter().copied().map(to_deg).collect()
 }
 
-/// Plot curve: angle, deg, against time, s, from radians.
+/// Plot curve of an angle, given in rad and plotted in deg, against time, s.
 pub fn angle_curve_deg(time: &[f64], angle: &[f64]) -> PlotCurve {
     PlotCurve::new(time, degrees(angle))
 }
@@ -69,7 +69,7 @@ pub fn zigzag_plot_data(trial: &Trial, zigzag: &ZigZag) -> ZigZagPlot {
     }
 }
 
-/// Replays of all estimates on a trial; failed methods are omitted.
+/// Replays of all estimates on a trial, without failed methods and replays that are not finite.
 pub fn replay_curves(
     trial: &Trial,
     answers: &[(MethodEntry, Option<Estimate>)],

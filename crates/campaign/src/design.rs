@@ -36,7 +36,7 @@ pub struct CellFacts {
     pub labels: Vec<String>,
     /// Values of the points; `null` for an axis of labels.
     pub values: Vec<Option<f64>>,
-    /// Replicates whose rows are stored: all of them, or those of a shard.
+    /// Replicates whose rows are stored.
     pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
     pub missing: Vec<String>,
@@ -90,7 +90,7 @@ impl Design {
         let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
-            missing: cell.missing(),
+            missing: cell.missing_effects(),
             physics: cell.physics().filter(|_| is_stated),
             is_base_with_effects: cell.is_base_with_effects(),
             is_compared_with_nearest: cell.is_compared_with_nearest(),

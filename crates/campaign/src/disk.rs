@@ -14,7 +14,7 @@ fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T
     operation()
 }
 
-/// Open file.
+/// Open file, whose operations a test can make fail.
 #[derive(Debug)]
 pub struct File {
     file: fs::File,
@@ -91,7 +91,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
     Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
 
-/// Content of a file up to a maximum size (`largest`), bytes; `None` if there is no file.
+/// Content of a regular file of at most `largest` bytes; `None` if there is no file.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
     let Some(mut file) = if_present(File::open(path))? else { return Ok(None) };
@@ -131,7 +131,7 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Time since the last write of a file; `None` if the system does not provide it.
+/// Time since the last write of a file; `None` if it cannot be determined.
 pub fn age(path: &Path) -> Option<Duration> {
     fs::metadata(path).ok()?.modified().ok()?.elapsed().ok()
 }

@@ -21,7 +21,7 @@ use crate::identified_ship::{self, MethodIndependentResults};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceRow};
-use crate::scenario::{Procedure, Scenario, Specification, TrialSpecification};
+use crate::scenario::{Procedure, SampledSpecification, Scenario, Specification};
 use crate::shard::TrialId;
 use crate::statistics::Moments;
 use crate::summary::effect_ids;
@@ -59,7 +59,7 @@ pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<SimulatedTrial
 /// True first-order responses of a trial, against which estimates are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueResponses {
-    /// First-order response nearest to the ship; the ship itself if it is first order.
+    /// First-order response nearest to the ship, or the ship itself if it is first order; `None` if the fit fails.
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects; `None` for a first-order ship or a hull.
     pub base: Option<FirstOrder>,
@@ -79,12 +79,12 @@ pub struct TrialRunner<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
     references: Vec<OnceLock<TrialReference>>,
-    /// Prepared simulations of cells whose trials differ by noise alone; empty if preparation would take longer.
+    /// Prepared simulations of cells whose trials differ by noise alone; empty above [`MAX_PREPARED_CELLS`] cells.
     prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
-/// Maximum number of cells with prepared simulations: with more, each cell has few trials, and a record of 1000 rows
-/// takes 0.1 MB.
+/// Maximum number of cells with prepared simulations: in a batch with more cells, each cell has few trials, and a
+/// record of 1000 rows takes 0.1 MB.
 const MAX_PREPARED_CELLS: usize = 64;
 
 impl<'a> TrialRunner<'a> {
@@ -103,7 +103,7 @@ impl<'a> TrialRunner<'a> {
     fn simulate(
         &self,
         cell: usize,
-        trial_spec: &TrialSpecification,
+        trial_spec: &SampledSpecification,
         key: &StreamKey,
     ) -> Result<Vec<SimulatedTrial>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
@@ -149,7 +149,7 @@ impl<'a> TrialRunner<'a> {
         key: &StreamKey,
         blank: StudyRow,
         simulated: Vec<SimulatedTrial>,
-        trial_spec: &TrialSpecification,
+        trial_spec: &SampledSpecification,
     ) -> (Vec<StudyRow>, Vec<Duration>) {
         let cell = &self.scenario.cells[index];
         let individual;
@@ -187,7 +187,7 @@ impl<'a> TrialRunner<'a> {
     }
 }
 
-/// Input of every method on a trial.
+/// Input of every method on a trial: records, random key, reference, missing effects, and check of predictions, if any.
 pub(crate) struct TrialInput<'a> {
     pub trials: &'a [Trial],
     pub key: &'a StreamKey,
@@ -296,7 +296,7 @@ impl TrialInput<'_> {
     }
 }
 
-/// Located moment, in records that end at `end`, s.
+/// Located moment; `end` (s) is the last instant of the records, to which a moment without an end lasts.
 fn located(entry: &LocatedEntry, end: f64) -> LocatedMoment {
     let is_named = |id: &&str| {
         let name = names::effect(id);
@@ -336,11 +336,11 @@ pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
 /// Minimum probability that is stored.
 const MIN_PROBABILITY: f64 = 0.005;
 
-/// Probabilities are rounded to multiples of 1/1000, so that a stored row equals the computed one.
+/// Reciprocal of the step to which probabilities are rounded, so that a stored row equals the computed one.
 const DIGITS: f64 = 1000.0;
 
 /// Difference of log evidence between the missing effect and the best other effect; `None` unless exactly one effect
-/// is missing.
+/// is missing and the trace weighed both.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {
@@ -398,8 +398,8 @@ method.output-error = {}
         TrialRunner::new(&scenario, 0..=0).run(TrialId { cell: 0, replicate: 0 }).rows
     }
 
-    /// Information of separate records adds: two records of one manoeuvre have a bound smaller by √2, and so is the
-    /// spread of the estimates from both.
+    /// Information of separate records adds up: two records of one manoeuvre divide the bound, and the spread of the
+    /// estimates from both, by √2.
     #[test]
     fn further_records_of_the_ship_are_identified_together() {
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";

@@ -138,7 +138,7 @@ impl fmt::Display for Failure {
 
 impl Error for Failure {}
 
-/// Conversion of an input/output error on a file of the study.
+/// Conversion of an error on a file of the study into a failure.
 pub trait OnPath<T> {
     /// Failure of an action on a path: "failed to ACTION PATH: cause".
     fn on(self, action: &str, path: &Path) -> Result<T, Failure>;

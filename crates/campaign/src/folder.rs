@@ -11,7 +11,7 @@ use std::time::Duration;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
 
-/// Prefix of temporary files, which any program ignores.
+/// Prefix of the names of temporary files, which no reader of the folder uses.
 const UNDER_WAY: &str = ".kempf-";
 
 /// Age of a temporary file from which it counts as left behind by a killed program.
@@ -54,7 +54,7 @@ impl ResultFolder {
         &self.path
     }
 
-    /// Path of a file in it. Fails for a name that contains a path.
+    /// Path of a file in the folder. Fails unless the name is a single component of a path.
     fn place(&self, name: &str) -> Result<PathBuf, Failure> {
         let mut parts = Path::new(name).components();
         match (parts.next(), parts.next()) {

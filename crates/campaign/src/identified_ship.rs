@@ -58,15 +58,15 @@ impl<'a> MethodIndependentResults<'a> {
         }
     }
 
-    /// Facts with hulls fitted to the records. Requires length and speed, records that begin under way, and
-    /// measured speed or positions, otherwise hulls of an analysis or of earlier trials.
+    /// Facts with hulls fitted to records that begin under way, with length and speed of the ship. No hull is fitted
+    /// unless every record contains speed or positions, or an analysis or earlier trials give hulls.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|channel| trial.channel(*channel).is_some());
         let sources = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
         let has_speed = |trial: &Trial| sources.iter().any(|channels| has_all(trial, channels));
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
-        // Structures may replay the records better, but give no speed in another manoeuvre.
+        // Response models may replay the records better, but give no speed in another manoeuvre.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
         let informed = fitted.iter().filter(|hull| hull.prior.has_trials);
@@ -136,7 +136,7 @@ impl<'a> MethodIndependentResults<'a> {
         }
     }
 
-    /// Root mean square difference of initial yaw rate between hull replays and straight approaches, rad/s.
+    /// Rms difference of initial yaw rate between hull replays and straight approaches, rad/s; 0 without an approach.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
         let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
             Some((record.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
@@ -169,7 +169,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Identified ship of a first-order estimate; `None` without a covariance.
+/// Identified ship of a first-order estimate; `None` without a covariance, and if a replay is not finite.
 ///
 /// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is the reading noise, or
 /// the rms residual of the replay if the records are not zig-zags.
@@ -256,16 +256,16 @@ const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 /// Standard deviation of the time of a movement's end between two rows, in sampling intervals: 1/√12 of a uniform law.
 const BETWEEN_ROWS: f64 = 0.29;
 
-/// Minimum ratio of neighbouring steps to a full-rate step.
+/// Minimum ratio, inside a movement, of the adjacent steps to a step and of this step to the rate of the gear.
 const FULL: f64 = 0.7;
 
 /// Minimum number of full-rate steps for an estimate of the rate.
 const MIN_STEPS: usize = 4;
 
-/// Rate of the steering gear from the reversals of zig-zags; `None` if no record resolves them.
+/// Rate of the steering gear, the mean over the zig-zags whose reversals resolve it; `None` if no record does.
 ///
-/// The rate is the mean over steps inside movements, with the standard error of that mean. If movements are about as
-/// long as a sampling interval, the error follows from a duration whose ends lie between two rows.
+/// The rate of a record is the mean over steps inside movements, with the standard error of that mean. If movements are
+/// about as long as a sampling interval, the error follows from a duration whose ends lie between two rows.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> {
     let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
     let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();
@@ -276,7 +276,7 @@ fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> 
     (count > 0.0).then(|| IdentifiedGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
 }
 
-/// Rate of the rudder on a record, rad/s, and its variance.
+/// Rate of the rudder on a record, rad/s, and its variance; `None` without a rate within [`RATES_DEG_S`].
 fn rudder_rate(trial: &Trial, zigzag: &ZigZag) -> Option<(f64, f64)> {
     let is_sound = |rate: &f64| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate));
     let rate = zigzag.rudder_rate.filter(is_sound)?;

@@ -6,7 +6,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | one trial, simulated or of measured records | [`engine`], `shared_fit` |
-//! | many of them, in order | [`shard`], [`block`], [`plan`], [`stopping`], [`collect`] |
+//! | many trials, in order | [`shard`], [`block`], [`plan`], [`stopping`], [`collect`] |
 //! | estimates of outside estimators | [`outside_estimates`] |
 //! | stored files | [`design`], [`rows`], [`block_store`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | writing to disk | [`files`], [`folder`], [`disk`] |

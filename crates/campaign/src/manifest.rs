@@ -114,7 +114,7 @@ impl Manifest {
         self.sha256.contains_key(DESIGN_FILE)
     }
 
-    /// Differences in design and seed, one sentence each; empty if both manifests have the same rows.
+    /// Differences in design and seed, one sentence each; empty if both manifests describe the same rows.
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         if self.design_sha256 != other.design_sha256 {

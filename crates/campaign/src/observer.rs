@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 /// Receiver of progress, notes and warnings, which may also request a stop.
 pub trait Observer: Sync {
-    /// Called before the first trial: at most `most` trials, of which `done` are stored.
+    /// Called before the first trial; `most` is the maximum number of trials, of which `done` are stored.
     fn begin(&self, _most: u64, _done: u64) {}
 
     /// Called after every trial.
@@ -21,8 +21,8 @@ pub trait Observer: Sync {
     /// Receives a warning for the user.
     fn warn(&self, _line: &str) {}
 
-    /// `true` to stop between two trials; finished trials are kept.
-    fn is_asked_to_stop(&self) -> bool {
+    /// `true` requests a stop before the next trial; finished trials are kept.
+    fn should_stop(&self) -> bool {
         false
     }
 

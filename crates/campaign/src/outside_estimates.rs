@@ -65,7 +65,7 @@ pub fn part_name(record: &str, number: usize) -> String {
     if number == 0 { record.to_owned() } else { format!("{record}-also-{number}") }
 }
 
-/// Limits of a table of outside estimates: one line per trial of a large study.
+/// Name and maximum size of a table of outside estimates, which suffices for one line per trial of a large study.
 const TABLE: FileKind = FileKind { name: "a table of answers", max_bytes: 1 << 30 };
 
 /// Known columns: those that are read, and those copied from the list of trials.
@@ -86,7 +86,8 @@ const MAX_NAMED_LINES: usize = 10;
 /// `delta_r_sd_deg`, and `failed`, the reason for a missing estimate. Warns of trials without a line and of unused
 /// columns.
 ///
-/// Fails if a column is missing; one message lists the lines that match no trial or contain no numbers.
+/// Fails if a column is missing, and for lines that match no trial, repeat one or contain no number; one message lists
+/// these lines.
 pub fn read(
     path: &Path,
     scenario: &Scenario,
@@ -148,9 +149,9 @@ pub fn read(
         .collect())
 }
 
-/// Warns of trials without a line of a method; a stopping rule leaves their number open.
+/// Warns of trials without a line of a method, except under a stopping rule, which leaves their number open.
 fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64, observer: &dyn Observer) {
-    let trials: u64 = (0..scenario.cells.len()).map(|cell| scenario.max_cell_trials(cell)).sum();
+    let trials = scenario.max_trials();
     let left = trials - answered;
     if left > 0 && scenario.stop.is_none() {
         let prefix = method.map_or_else(String::new, |method| format!("{method}: "));
@@ -162,7 +163,7 @@ fn missing(path: &Path, scenario: &Scenario, method: Option<&str>, answered: u64
 /// Look-up from record names to trials.
 struct Records<'a> {
     scenario: &'a Scenario,
-    /// Cell index by record name; most studies have far fewer cells than trials.
+    /// Cell index by record name without the replicate; most studies have far fewer cells than trials.
     cells: HashMap<String, u64>,
     /// Trials by the names of the records fitted together, in a study of measured records.
     fits: HashMap<String, Vec<TrialNumber>>,
@@ -261,14 +262,15 @@ impl AnswerColumns {
                 .map_err(|_| format!("{name} is {}; expected a whole number from 0", quoted_beginning(text)))
         };
         let (cell, replicate) = (whole("cell")?, whole("replicate")?);
-        let Scenario { cells, replicates, .. } = records.scenario;
-        match cell < cells.len() as u64 && replicate < *replicates {
+        let count = records.scenario.cells.len();
+        let trials = usize::try_from(cell).ok().filter(|&cell| cell < count);
+        let trials = trials.map_or(0, |cell| records.scenario.max_cell_trials(cell));
+        match replicate < trials {
             true => Ok(vec![(cell, replicate)]),
-            false => Err(format!(
-                "there is no trial {replicate} of cell {cell}; the scenario has {} cells with {replicates} trials each, \
-                 counted from 0",
-                cells.len()
+            false if cell < count as u64 => Err(format!(
+                "there is no trial {replicate} of cell {cell}; this cell has {trials} trials, counted from 0"
             )),
+            false => Err(format!("there is no cell {cell}; the scenario has {count} cells, counted from 0")),
         }
     }
 
@@ -378,7 +380,7 @@ mod tests {
             "cell,replicate,K_per_s,T_s\n0,0,1,1\n0,3,1,1\n2,0,1,1\n0,0,1,1\n-1,0,1,1\n0,1,a lot,1\n",
             &[
                 "line 3: there is no trial 3 of cell 0",
-                "line 4: there is no trial 0 of cell 2",
+                "line 4: there is no cell 2",
                 "line 5: its trial is already answered in line 2",
                 "line 6: cell is \"-1\"",
                 "line 7: K_per_s is \"a lot\"; expected a number",

@@ -9,7 +9,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{Type, TypePtr};
 
-/// Values of one column for several rows.
+/// Values of one column, one per row; `None` for a missing value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     /// Whole numbers.
@@ -65,14 +65,14 @@ pub(crate) fn write_group(
     group.close().map(drop)
 }
 
-/// Writes the values of a column; those that are missing have level 0.
+/// Writes the values of a column; a missing value has definition level 0.
 fn write<T: DataType>(target: &mut SerializedColumnWriter<'_>, values: Vec<Option<T::T>>) -> Result<usize> {
     let present: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
     let values: Vec<T::T> = values.into_iter().flatten().collect();
     target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
-/// Parquet file of a table; all columns have the same number of rows.
+/// Parquet file of a table, whose columns must have the same number of rows.
 pub fn encode(columns: Vec<(String, Values)>) -> Result<Vec<u8>> {
     let fields = columns.iter().map(|(name, values)| values.field(name)).collect();
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();

@@ -86,8 +86,8 @@ impl<'a> TrialPlan<'a> {
         Ok(is_left.then_some(TrialId { cell: self.cell, replicate: self.open.start }))
     }
 
-    /// Next trials, at most `most` and for measured records whole blocks; empty if the shard is done. The rows of
-    /// all trials issued before must have been passed to [`TrialPlan::add`].
+    /// Next trials, at most `most`, except that a block of measured records is issued as a whole; empty if the shard is
+    /// done. The rows of all trials issued before must have been passed to [`TrialPlan::add`].
     pub fn next_trials(&mut self, most: u64) -> Result<Vec<TrialId>, Failure> {
         let mut tasks = Vec::new();
         loop {
@@ -106,7 +106,7 @@ impl<'a> TrialPlan<'a> {
         }
     }
 
-    /// Begins the next block with missing trials; `false` if there is none.
+    /// Begins the next block with missing trials; `false` if no such block is left.
     fn begin(&mut self) -> Result<bool, Failure> {
         while let Some(place) = self.blocks.next() {
             let block = Block::from_index(place, self.scenario);

@@ -8,28 +8,30 @@ use simulate::{Disturbances, Recording, Sensors, SimulatedTrial, Simulation, Str
 use trial::Trial;
 
 use crate::bound;
-use crate::scenario::{Specification, TrialSpecification};
+use crate::scenario::{SampledSpecification, Specification};
 
 /// Reference for the estimates of a trial: true responses, Cramér–Rao bound and validation manoeuvre.
 #[derive(Default)]
 pub struct TrialReference {
-    /// First-order response nearest to the ship; the ship itself if it is first order.
+    /// First-order response nearest to the ship, or the ship itself if it is first order; `None` if the fit fails.
     pub nearest: Option<FirstOrder>,
-    /// First-order base of a response ship with effects.
+    /// First-order base of a response ship with effects; `None` for a first-order ship or a hull.
     pub base: Option<FirstOrder>,
     /// Cramér–Rao bound of this trial: standard deviations of K (1/s), T (s) and K/T (1/s²), and covariance of the
-    /// relative errors of K and T, %².
+    /// relative errors of K and T, %². `None` as in [`bound::cramer_rao_bound`], and without a nearest response.
     pub bound: Option<([f64; 3], [[f64; 2]; 2])>,
-    /// Undisturbed second manoeuvre without measurement noise.
+    /// Second manoeuvre outside the fit: simulated without disturbance and measurement noise, or a measured record
+    /// without heading spikes; `None` without validation.
     pub validation: Option<Trial>,
-    /// Expected 2 ln Λ of the truth against the nearest first-order response.
+    /// Expected 2 ln Λ of the truth against the nearest first-order response; `None` without a trace, and unless the
+    /// heading noise is white.
     pub expected: Option<f64>,
 }
 
 impl TrialReference {
-    /// Reference of the trial with a key; `traces` if a trace is among the methods.
+    /// Reference of a simulated trial; `traces` states whether a trace is among the methods.
     pub fn from_simulated(
-        trial_spec: &TrialSpecification,
+        trial_spec: &SampledSpecification,
         simulated: &[SimulatedTrial],
         key: &StreamKey,
         traces: bool,
@@ -59,10 +61,12 @@ pub struct NearestResponse {
     pub response: FirstOrder,
     /// Mean square heading error, rad².
     mean_square: f64,
+    /// Number of rows of all records.
     rows: usize,
 }
 
-/// First-order response nearest to a ship in the manoeuvres of a trial, by output error (Ljung 1999).
+/// First-order response nearest to a ship in the manoeuvres of a trial, by output error (Ljung 1999); `None` if a
+/// simulation or the fit fails.
 pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Option<NearestResponse> {
     let calm = |(simulation, key): (&Simulation, StreamKey)| {
         let calm = Simulation {

@@ -14,7 +14,7 @@ pub struct TrialId {
     pub replicate: u64,
 }
 
-/// Shard of a study: one of `count` equal ranges of its trials.
+/// Shard of a study: one of `count` ranges of its blocks, or under a stopping rule of its cells, of almost equal size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Number of the shard, from 1.
@@ -52,7 +52,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Default result folder of a study.
+/// Default result folder of a study, `results/NAME`.
 pub fn default_folder(name: &str) -> PathBuf {
     Path::new("results").join(name)
 }

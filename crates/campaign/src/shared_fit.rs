@@ -55,7 +55,8 @@ pub fn run_group(runner: &TrialRunner, scenario: &Scenario, tasks: &[TrialId]) -
 /// Fit of one method to the fitted records of a group of trials.
 struct RecordFit {
     answer: FitAnswer,
-    /// Identified ship for predictions; `None` in a study without predictions, and without a covariance.
+    /// Identified ship for predictions; `None` without predictions or validation records, and if no ship can be drawn
+    /// from the fit.
     ship: Option<IdentifiedShip>,
 }
 
@@ -73,7 +74,7 @@ struct SharedTrials<'a> {
     fitted: &'a [Trial],
     /// Fitted records without heading spikes, which are excluded from all errors.
     cleaned: &'a [Trial],
-    /// Validation record of each trial, as read and without heading spikes.
+    /// Validation record of each trial, as read and without heading spikes; `None` without validation.
     judges: Vec<Option<[&'a Trial; 2]>>,
 }
 
@@ -104,7 +105,7 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutc
 }
 
 impl SharedTrials<'_> {
-    /// Rows of a method, one per trial: one fit, judged by the validation record of each trial.
+    /// Rows of a method, one per trial: one fit, scored on the validation record of each trial.
     fn rows(&self, method: usize, procedure: &Procedure) -> Vec<StudyRow> {
         let key = |task: &TrialId| engine::stream_key(self.scenario, *task);
         let shared = match procedure {
@@ -133,8 +134,8 @@ impl SharedTrials<'_> {
         self.tasks.iter().enumerate().map(row).collect()
     }
 
-    /// Validation record of a trial; `None` if its ship length differs from the fitted records, since responses of
-    /// another scale are not replayed.
+    /// Validation record of a trial, as read and without heading spikes; `None` without validation, and if its ship
+    /// length differs from that of the fitted records, since responses of another scale are not replayed.
     fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
@@ -142,7 +143,7 @@ impl SharedTrials<'_> {
         self.judges[trial].filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
     }
 
-    /// First-order response of the records; `None` for a trace.
+    /// First-order fit to the records, or the reason of its failure; `None` for a trace and for the null model.
     fn response(&self, procedure: &Procedure, key: &StreamKey) -> Option<Result<RecordFit, String>> {
         let answer = procedure.identify(self.fitted, key)?;
         let fit = |estimate| self.fit(FitAnswer::Response(Box::new(estimate)), None);
@@ -183,7 +184,7 @@ impl SharedTrials<'_> {
     }
 }
 
-/// Identified ship of a fit; `None` without a covariance.
+/// Identified ship of a fit; `None` for the null model, and if no ship can be drawn from the fit.
 ///
 /// A trace whose model requires measured speed or sway gives no prediction; the records are then traced without them.
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {

@@ -49,7 +49,7 @@ pub struct ShowcaseAnswer {
     pub warnings: Vec<String>,
 }
 
-/// Points of a fitted curve between two rows of the record.
+/// Number of points of a fitted curve per row of the record.
 const POINTS_PER_ROW: usize = 4;
 
 /// Showcase of a cell; `None` if its first trial cannot be simulated.
@@ -128,11 +128,12 @@ struct FourierCurve<'a> {
     origin: CurveOrigin,
     trial: &'a Trial,
     curve: identify::fourier::FourierSeries,
+    /// Begin and end of the plotted curve, s from the first observed row.
     window: [f64; 2],
 }
 
 impl<'a> FourierCurve<'a> {
-    /// Fourier curves of the methods of a cell, one per method id, since variants share the curve.
+    /// Fourier curves of the methods of a cell; of several variants of a method, the curve of the first.
     fn from_cell(cell: &DesignCell, names: &[MethodName], trial: &'a Trial) -> Vec<Self> {
         let mut seen = Vec::new();
         let fit = |method: &Method| {

@@ -55,7 +55,7 @@ impl StopCheck {
     }
 }
 
-/// Moments of relative errors, %, and counts of covering intervals.
+/// Moments of relative errors, %, and numbers of quoted intervals and of those that contain the truth (`held`).
 #[derive(Debug, Clone, Copy, Default)]
 struct FigureSums {
     errors: Moments,

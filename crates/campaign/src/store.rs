@@ -36,7 +36,7 @@ pub struct StoredStudy {
 }
 
 impl StoredStudy {
-    /// Finished study of a folder. Fails as wrong input without one.
+    /// Finished study of a folder. Fails without one, and if one of its files was changed.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let manifest = required_manifest(folder)?;
         if !manifest.is_finished() {
@@ -45,7 +45,7 @@ impl StoredStudy {
         Self::from_manifest(folder, manifest)
     }
 
-    /// Files listed by a manifest, verified by their SHA-256.
+    /// Study from the files that a manifest lists, verified by their SHA-256.
     pub(crate) fn from_manifest(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
         let text = |name: &str| {
             let path = folder.join(name);
@@ -102,7 +102,7 @@ fn refused(path: &Path, problem: &str) -> Failure {
     )
 }
 
-/// Manifest of a folder with rows; `None` without rows, as in a published folder.
+/// Manifest of a folder with rows; `None` without rows, as in a folder published without them, or without a manifest.
 ///
 /// Fails for rows in the single file of earlier versions.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {

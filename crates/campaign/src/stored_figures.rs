@@ -76,7 +76,7 @@ pub struct DerivativeCurves {
 }
 
 impl DerivativeCurves {
-    /// Panels: heading, yaw rate and yaw acceleration above each other, with the effect of differentiation on a small
+    /// Panels: heading, yaw rate and yaw acceleration above each other. They show how differentiation amplifies a small
     /// error of the heading.
     pub fn panels(&self) -> Panels {
         let row = |y: AxisSpec, series: fn(&MotionCurves) -> &PlotCurve| {
@@ -119,7 +119,7 @@ pub struct Replays {
     pub replays: Vec<ReplayCurves>,
 }
 
-/// Maximum excursion of a replay beyond the range of the record, as a share of that range; then it is cut.
+/// Maximum excursion of a replay beyond the range of the record, as a share of that range; beyond it the replay is cut.
 const HEADING_ROOM: f64 = 0.25;
 /// Limit of a residual in multiples of the median absolute value; beyond it the residual is cut.
 const RESIDUAL_ROOM: f64 = 10.0;

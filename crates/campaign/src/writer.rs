@@ -22,11 +22,11 @@ const AGE_SHARE: f64 = 0.01;
 pub struct BlockWriter<'a> {
     store: &'a BlockStore<'a>,
     scenario: &'a Scenario,
-    /// Current block.
+    /// Current block; `None` before the first trial.
     block: Option<Block>,
     rows: Vec<StudyRow>,
     timings: Timings,
-    /// Time of the first unsaved row.
+    /// Time of the first unsaved row; `None` if all rows are stored.
     since: Option<Instant>,
 }
 

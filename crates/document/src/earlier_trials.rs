@@ -49,7 +49,7 @@ pub struct PriorCheckEntry {
     pub degrees_of_freedom: usize,
     /// Probability of a χ² at least as large if the models are right.
     pub p_value: f64,
-    /// Coefficients by their keys with their shift in prior standard deviations, in decreasing order.
+    /// Coefficients by their keys with their shift in prior standard deviations, the largest magnitude first.
     #[serde(rename = "moved")]
     pub shifts: Vec<(String, f64)>,
     /// `true` if the hull is a member of the result.
@@ -78,10 +78,12 @@ impl Likeness {
         }
     }
 
-    /// Factor by which standard deviations are widened. The values are judgements, not tuned on results. 1.5: a
-    /// hull model of twenty coefficients is not the ship, so two trials of one ship differ by more than their errors.
-    /// 2: rudder and propeller of a model work in another wake. 3: the formulas predict at best a third of a difference
-    /// of loading.
+    /// Factor by which the standard deviations of the estimates of earlier trials are multiplied. The values are
+    /// judgements, not tuned on results.
+    ///
+    /// 1.5 for the same ship: a hull model of twenty coefficients is not the ship, so two trials of one ship differ by
+    /// more than their errors. 2 for another scale: rudder and propeller of a ship model work in another wake. 3 for
+    /// another hull: empirical formulas predict at best a third of the difference between two loadings.
     pub fn factor(self) -> f64 {
         match self {
             Self::SameShip => 1.5,

@@ -8,25 +8,25 @@ pub enum IdentifiedShipError {
     /// Unknown effect of the model.
     #[error("unknown effect `{id}` ({form}); fit or trace the record again with this program")]
     Effect {
-        /// Identifier.
+        /// Identifier of the effect.
         id: String,
-        /// Form.
+        /// Form of the effect.
         form: String,
     },
-    /// Lists of different lengths.
+    /// List of an unexpected length, or index beyond the end of a list.
     #[error("{list}: expected {expected}, found {length}; fit or trace the record again with this program")]
     Count {
         /// Name of the list.
         list: &'static str,
-        /// Expected number.
+        /// Expected length.
         expected: usize,
-        /// Number in the file.
+        /// Length in the file; for an index, the length that it requires.
         length: usize,
     },
     /// Parameter that is not finite, or length, speed or weight out of range.
     #[error("{key} = {value}: expected a finite number (a weight of at least 0, a length or speed of a ship)")]
     Value {
-        /// Key of the parameter.
+        /// Key of the number.
         key: &'static str,
         /// Value in the file.
         value: f64,

@@ -190,7 +190,7 @@ pub struct FitDocument {
 }
 
 impl FitDocument {
-    /// Length and speed to which dimensional numbers refer, if known.
+    /// Length and approach speed to which dimensional numbers refer; `None` if one of them is unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
@@ -208,12 +208,12 @@ impl FitDocument {
             .any(|warning| matches!(warning.code, WarningCode::FaultyReadings | WarningCode::RudderOrder))
     }
 
-    /// Warnings on the recommended estimate, the most severe first.
+    /// Warnings on the records, the fit and the recommended estimate, the most severe first.
     pub fn verdict_warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|warning| !self.is_note(warning))
     }
 
-    /// Warnings on other estimates, which are frequent and less relevant.
+    /// Warnings on the estimates of the other methods, which are frequent and less relevant.
     pub fn other_warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().filter(|warning| self.is_note(warning))
     }
@@ -225,7 +225,8 @@ impl FitDocument {
 }
 
 impl VerdictEntry {
-    /// `true` if additional terms of a hull reduce the residual of output error to less than two thirds.
+    /// `true` if additional terms of a hull reduce the residual of output error to less than two thirds, or if one of
+    /// the residuals is unknown.
     pub fn improves_with_ship_terms(&self) -> bool {
         self.residual_deg.zip(self.with_ship_terms_deg).is_none_or(|(before, after)| after < before * 2.0 / 3.0)
     }
@@ -277,7 +278,8 @@ pub struct VerdictEntry {
     /// Reason if they cannot be used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,
-    /// Recommended method; if K and T cannot be used, the method with the minimum heading error.
+    /// Recommended method; if it gives no estimate or no replay is better than straight lines, the method with the
+    /// minimum heading error.
     pub method: String,
     /// K of that method, 1/s; absent if `believe` is `no`.
     #[serde(rename = "K_per_s", default, skip_serializing_if = "Option::is_none")]
@@ -300,8 +302,8 @@ pub struct VerdictEntry {
     pub rudder_delay_s: Option<f64>,
     /// Methods whose heading error is more than ten times the minimum.
     pub set_apart: Vec<String>,
-    /// Root mean square about straight lines, deg, if no replay is better than these; then no method gives an
-    /// estimate, and `method` is the one with the minimum heading error.
+    /// Root mean square of the headings about straight lines, deg, if no replay is better than these; then K and T
+    /// cannot be used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub straight_lines_deg: Option<f64>,
     /// Output error or maximum likelihood, if its 95 % interval of K or T does not overlap that of the recommended

@@ -26,7 +26,7 @@ pub struct IdentifiedCoefficient {
 }
 
 impl IdentifiedCoefficient {
-    /// Distance from the prior mean in prior standard deviations.
+    /// Signed distance of the estimate from the prior mean, in prior standard deviations.
     pub fn departure_from_prior(&self) -> f64 {
         (self.value - self.expected) / self.expected_sd
     }
@@ -96,7 +96,7 @@ pub fn matrix_rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 impl IdentifiedHull {
-    /// Hull form. Fails for an unknown form, and if the coefficients are not those of the form.
+    /// Hull form. Fails for an unknown form or particular, and if the coefficients are not those of the form.
     pub fn form(&self) -> Result<HullForm, IdentifiedShipError> {
         let refused = || self.unknown_model_error();
         let forms = HullForm::candidates(Some(&self.particulars()?));
@@ -139,9 +139,11 @@ impl IdentifiedHull {
     /// Hull at another loading and its approach speed, from the `expected` coefficients μ given the trials of this
     /// hull, their covariance C and their gain G with respect to the coefficients of this hull.
     ///
-    /// θ = μ + G (θ₁ − θ̂₁) + e, Cov e = C − G C₁ Gᵀ: both hulls share the errors of the trial. δ_r, value and error,
-    /// is that of the trial, because ship, sensor and side of the propeller are unchanged. So are the random moment as
-    /// a rudder angle, which represents the form, and its correlation time in L/U₀. The propeller rate is unknown.
+    /// The coefficients are θ = μ + G (θ₁ − θ̂₁) + e with Cov e = C − G C₁ Gᵀ. Here θ₁ are the true coefficients of
+    /// this hull, θ̂₁ their estimate and C₁ its covariance, so both hulls share the errors of the trial. Value and
+    /// error of δ_r are those of the trial, because ship, sensor and side of the propeller are unchanged. The random
+    /// moment represents the error of the form: as a rudder angle, and with its correlation time in L/U₀, it stays the
+    /// same. The propeller rate is unknown.
     #[must_use]
     pub fn at_loading(
         &self,
@@ -184,7 +186,7 @@ impl IdentifiedHull {
         }
     }
 
-    /// `true` if this hull was derived from another one, at any scale.
+    /// `true` if this hull at another loading was derived from the trials of `other`, at any scale.
     pub fn is_derived_from(&self, other: &Self) -> bool {
         let is_same = |hull: &Self| hull.coefficients == other.coefficients && hull.covariance == other.covariance;
         self.trial_hull.as_ref().is_some_and(|from| is_same(&from.hull))

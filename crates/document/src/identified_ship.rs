@@ -84,7 +84,8 @@ pub struct IdentifiedShip {
 }
 
 impl WeightedStructure {
-    /// Response model. Fails for an unknown effect, and for parameters or a covariance of the wrong size.
+    /// Response model. Fails for an unknown effect, for parameters or a covariance of the wrong size, for a parameter
+    /// that is not finite, and if `fitted` has an index beyond the parameters.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
         let effect = |written: &IdentifiedEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
             effects::find(&written.id, &written.form, &written.constants)
@@ -131,7 +132,7 @@ pub fn is_same_length(a: f64, b: f64) -> bool {
 }
 
 impl IdentifiedShip {
-    /// Length and speed, if both are known.
+    /// Length and approach speed; `None` if one of them is unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
@@ -140,8 +141,8 @@ impl IdentifiedShip {
     /// L₂/L₁, and dimensionless numbers (K′, T′ and all others) stay. With U ~ √L, the default, this is the scaling of
     /// Froude (1868).
     ///
-    /// Noise scales with the ship, as if the sea were scaled. Fails if length or speed of the ship is unknown, or a
-    /// constant has no unit.
+    /// The random moment scales with the ship, as if the sea were scaled. Fails if length or speed of the ship is
+    /// unknown or a constant has no unit, and as [`WeightedStructure::model`] does.
     pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, IdentifiedShipError> {
         let ship = self.particulars().ok_or(IdentifiedShipError::NoParticulars)?;
         let metre = length / ship.length;
@@ -180,7 +181,8 @@ impl IdentifiedShip {
         Ok(scaled)
     }
 
-    /// Ship in a calm: without the random moment and the effects of wind.
+    /// Ship in a calm: without random moments, the error of the initial yaw rate and the effects of wind. Fails as
+    /// [`WeightedStructure::model`] does.
     pub fn in_calm(&self) -> Result<Self, IdentifiedShipError> {
         let mut calm = self.clone();
         calm.noise.moment = RandomMoment::None;
@@ -212,8 +214,8 @@ impl IdentifiedShip {
         Ok(calm)
     }
 
-    /// Delay of the logged rudder, s: a negative dead time of the most probable structure; `None` if
-    /// positive.
+    /// Delay of the logged rudder behind the acting one, s: the negative of the dead time of the most probable
+    /// structure. `None` unless that dead time is negative.
     pub fn logged_rudder_delay(&self) -> Option<f64> {
         let likeliest = self.members.iter().max_by(|a, b| a.weight.total_cmp(&b.weight))?;
         let places = likeliest.dead_time_indices(&likeliest.model().ok()?);
@@ -221,8 +223,8 @@ impl IdentifiedShip {
         (late > 0.0).then_some(late)
     }
 
-    /// Time scale of the ship, s: L/U if known, otherwise (K/T)^(−1/2) of the most probable structure, which
-    /// is similar.
+    /// Time scale of the ship, s: L/U if known, otherwise (K/T)^(−1/2) of the most probable structure, which is
+    /// similar. `None` if L/U is unknown and K/T is not positive.
     pub fn timescale(&self) -> Option<f64> {
         if let Some(particulars) = self.particulars() {
             return Some(particulars.ship_length_time());

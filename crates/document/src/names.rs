@@ -9,7 +9,7 @@ const EFFECTS: [(&str, &str); 5] = [
     ("wave_yaw", "yaw in waves"),
 ];
 
-/// Physics of the listed effects.
+/// Physics of every listed effect, as a sentence without its full stop.
 const PHYSICS: [(&str, &str); 12] = [
     ("second_order", "sway responds to the rudder with its own time constant, and yaws the ship"),
     ("sway_coupling_measured", "the ship drifts in a turn, and the drift yaws her"),
@@ -25,7 +25,7 @@ const PHYSICS: [(&str, &str); 12] = [
     ("wave_yaw", "waves yaw the ship at their frequency of encounter"),
 ];
 
-/// Suffixes of identifiers with their units; a longer suffix precedes its own ending.
+/// Suffixes of identifiers with their units. The first match counts, so a suffix precedes all that it ends in.
 const UNITS: [(&str, &str); 7] = [
     ("_deg_s", "deg/s"),
     ("_deg", "deg"),
@@ -36,7 +36,7 @@ const UNITS: [(&str, &str); 7] = [
     ("_s", "s"),
 ];
 
-/// Display name of an effect; for a formula its identifier with blanks.
+/// Display name of an effect: its identifier with blanks, unless `EFFECTS` lists another name.
 pub fn effect(id: &str) -> String {
     let listed = EFFECTS.iter().find(|(key, _)| *key == id);
     listed.map_or_else(|| with_blanks(id), |(_, name)| (*name).to_owned())
@@ -52,8 +52,8 @@ pub fn effects<S: AsRef<str>>(ids: &[S], between: &str) -> String {
     ids.iter().map(|id| effect(id.as_ref())).collect::<Vec<_>>().join(between)
 }
 
-/// Display name of an effect in one of its forms: `nonlinear damping (r³)`; a form that is the name of the effect is
-/// not repeated.
+/// Display name of an effect in one of its forms, such as `nonlinear damping (r³)`. A form that is part of the name of
+/// the effect is not repeated.
 pub fn effect_form(id: &str, form: &str) -> String {
     let name = effect(id);
     if name.contains(form) { name } else { format!("{name} ({form})") }
@@ -65,7 +65,8 @@ pub fn record(stem: &str) -> String {
     if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| with_blanks(stem)) }
 }
 
-/// Display name and unit of a figure of merit from the unit suffix of its identifier; an empty unit without one.
+/// Display name and unit of a figure of merit from the unit suffix of its identifier; the unit is empty without a
+/// suffix.
 pub fn figure_of_merit(id: &str) -> (String, &'static str) {
     let suffixed = UNITS.into_iter().find_map(|(suffix, unit)| Some((id.strip_suffix(suffix)?, unit)));
     let (stem, unit) = suffixed.unwrap_or((id, ""));

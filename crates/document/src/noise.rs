@@ -69,7 +69,7 @@ impl RandomMoment {
         }
     }
 
-    /// Size as a rudder angle, rad: standard deviation over one second, or of gusts; 0 without a moment.
+    /// Size in the unit of its kind: rad √s if white, rad/√s for a random walk, rad for gusts; 0 without a moment.
     pub fn size(self) -> f64 {
         match self {
             Self::None => 0.0,
@@ -79,7 +79,7 @@ impl RandomMoment {
         }
     }
 
-    /// Moment with size and times multiplied.
+    /// Moment with its size multiplied by `factor` and its correlation time by `second`.
     fn times(self, factor: f64, second: f64) -> Self {
         match self {
             Self::None => Self::None,
@@ -96,7 +96,7 @@ impl RandomMoment {
         self == Self::None
     }
 
-    /// Moment of a ship whose times are multiplied by `second`, at the same rudder angle.
+    /// Moment of a ship whose times are multiplied by `second`; as a rudder angle it stays the same.
     #[must_use]
     pub fn scaled(self, second: f64) -> Self {
         let factor = match self {
@@ -109,7 +109,7 @@ impl RandomMoment {
 }
 
 impl HeadingNoise {
-    /// Mean noise of records with one kind of moment; `None` without records.
+    /// Mean noise of records whose moments have one kind and one correlation time; `None` without records.
     pub fn mean(records: &[Self]) -> Option<Self> {
         let first = records.first()?;
         let mean = |value: fn(&Self) -> f64| records.iter().map(value).sum::<f64>() / records.len() as f64;
@@ -126,7 +126,7 @@ mod tests {
 
     const GUSTS: RandomMoment = RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: 0.01, correlation_s: 20.0 };
 
-    /// A time four times as long: a white moment is twice as large over one of its seconds, a walk half.
+    /// With times four times as long, the size of a white moment doubles, and that of a random walk halves.
     #[test]
     fn a_moment_scales_with_the_times_of_its_ship() {
         let white = RandomMoment::White { rudder_rad_root_s: 0.01 }.scaled(4.0);

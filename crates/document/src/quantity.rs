@@ -44,17 +44,17 @@ impl Quantity {
         }
     }
 
-    /// Difference of two quantities with independent errors.
+    /// Difference of two quantities with independent errors, without an interval.
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.value - other.value, root_sum_of_squares(self.sd, other.sd))
     }
 
-    /// Quantity with an additional independent error.
+    /// Quantity with an additional independent error of standard deviation `sd`, without an interval.
     pub fn widened(self, sd: Option<f64>) -> Self {
         Self::new(self.value, root_sum_of_squares(self.sd, sd))
     }
 
-    /// Mean of quantities with independent errors; `None` for an empty list.
+    /// Mean of quantities with independent errors, without an interval; `None` for an empty list.
     pub fn mean(quantities: &[Self]) -> Option<Self> {
         if quantities.is_empty() {
             return None;

@@ -69,8 +69,8 @@ pub struct ScalesEntry {
 }
 
 impl ScalesEntry {
-    /// Comparison for groups of records; `files` are the names of all records, `first` the particulars of the first
-    /// scale.
+    /// Comparison of groups of records, each with its particulars and the indices of its records in `files`; `first`
+    /// are the particulars of the first scale.
     pub fn new(
         groups: &[(Particulars, Vec<usize>)],
         files: &[&str],

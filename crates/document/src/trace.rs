@@ -357,7 +357,7 @@ impl TraceDocument {
         self.records.iter().map(|record| record.name.clone()).collect()
     }
 
-    /// Title: names of the fitted records, shortened for many.
+    /// Title: display names of the fitted records; of many records only the first two are named.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
         let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();

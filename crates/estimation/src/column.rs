@@ -61,13 +61,14 @@ impl<const N: usize> Kernel for Gram<'_, N> {
 /// Projection of a column on the constant and on a unit column.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ColumnProjection {
-    /// Mean.
+    /// Mean of the column.
     pub mean: f64,
     /// Component along the unit column.
     pub share: f64,
 }
 
-/// Projection of a column, removed in place, on the constant and on `unit` (unit length, zero mean, as many rows).
+/// Subtracts from a column, in place, its projection on the constant and on `unit` (length 1, mean 0, as many rows),
+/// and returns the projection.
 pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
     run(Project { unit, column })
 }

@@ -1,8 +1,8 @@
 //! Kalman filter of a linear system with readings in a fixed order. Gains and variances do not depend on the values of
 //! the readings, so the filter is a linear map that whitens columns of readings.
 //!
-//! x ← F x + w before a reading, cov w = Q; a sensor reads one state or the sum of two, with white noise. With one kind
-//! of reading at even times the gain becomes stationary; then no further covariance is computed.
+//! x ← F x + w before a reading, cov w = Q; a sensor reads one state or the sum of two, with white noise. With one
+//! sensor at even times, or two in turn, the gains become stationary; then no further covariance is computed.
 //!
 //! Sources: Kalman (1960), Journal of Basic Engineering 82:35-45; Harvey (1989), Forecasting, Structural Time Series
 //! Models and the Kalman Filter, for the prediction error decomposition.
@@ -62,7 +62,7 @@ impl<const N: usize> Step<N> {
 pub struct StateSensor {
     /// Index of the state.
     pub state: usize,
-    /// Index of a second state that is added.
+    /// Index of a second state, which is added to the first; `None` for a sensor of one state.
     pub second_state: Option<usize>,
     /// Variance of the noise.
     pub variance: f64,
@@ -93,7 +93,7 @@ pub struct Reading {
 const NO_TIME: u32 = u32::MAX;
 
 impl Reading {
-    /// Reading of a sensor after a time step; `None` if no time passes.
+    /// Reading of a sensor after the time step of index `step`, which is `None` if no time passes.
     ///
     /// # Panics
     /// If an index is beyond 32 bits.
@@ -229,7 +229,8 @@ impl<const N: usize> Filter<N> {
         Self { system, gains, weights, log_variances, gain_of }
     }
 
-    /// Sum Σ log S over the readings.
+    /// Sum Σ log S over the readings, with the innovation variances S: log determinant of the covariance of the
+    /// readings.
     pub fn log_determinant(&self) -> f64 {
         let mut counts = vec![0_u32; self.gains.len()];
         self.gain_of.iter().for_each(|&gain| counts[gain as usize] += 1);
@@ -258,7 +259,8 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], sensor: &StateSensor)
     Gain { gain, variance }
 }
 
-/// Evaluation of an expression with the number of states as a constant, chosen at run time.
+/// Evaluates an expression with a number of states from 0 to 5, known at run time, as the constant `$N`; a larger
+/// number counts as 5.
 #[macro_export]
 macro_rules! with_states {
     ($states:expr, $N:ident => $body:expr) => {

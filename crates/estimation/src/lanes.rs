@@ -16,7 +16,7 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
 }
 
-/// Name of the widest instruction set of this machine.
+/// Name of the widest x86-64 instruction set of this machine that kernels are compiled for; `plain` without one.
 pub fn instruction_set() -> &'static str {
     struct Nothing;
     impl Kernel for Nothing {

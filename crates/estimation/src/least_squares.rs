@@ -16,7 +16,7 @@ pub enum LeastSquaresError {
         /// Number of rows.
         rows: usize,
     },
-    /// Parallel columns, or a column that is zero or not finite.
+    /// Columns that are nearly linearly dependent, or a column that is zero or not finite.
     #[error("the equations are singular (condition number {condition:.1e}, limit {limit:.0e})")]
     Singular {
         /// Condition number of the scaled columns.
@@ -45,7 +45,8 @@ impl LeastSquares {
     /// Solution by singular values of the scaled columns; every column has as many rows as `y`.
     ///
     /// Fails with [`LeastSquaresError::TooFewRows`] for fewer rows than columns, and with
-    /// [`LeastSquaresError::Singular`] if the condition number of the scaled columns exceeds `condition_limit`.
+    /// [`LeastSquaresError::Singular`] if the condition number of the scaled columns exceeds `condition_limit`, or if a
+    /// column is zero or not finite.
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, LeastSquaresError> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {

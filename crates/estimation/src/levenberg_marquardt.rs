@@ -1,8 +1,8 @@
 //! Nonlinear least squares between bounds by damped Gauss–Newton steps.
 //!
 //! J(θ) = Σ e², plus prior terms in θ, if any. The caller computes e and its exact derivatives; this module makes the
-//! steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound whose gradient points
-//! outwards is held. Work space is allocated once per search.
+//! steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound is held if J decreases
+//! beyond the bound. Work space is allocated once per search.
 //!
 //! Sources: Levenberg (1944), Quarterly of Applied Mathematics 2:164-168; Marquardt (1963), Journal of the Society for
 //! Industrial and Applied Mathematics 11:431-441; Moré (1978).
@@ -50,9 +50,9 @@ pub struct SearchSettings {
     pub max_rejections: usize,
     /// Predicted decrease of J below which a search has converged.
     pub min_decrease: f64,
-    /// Absolute and relative tolerance for a small decrease of J.
+    /// Absolute tolerance a and relative tolerance r: a decrease of J is small if it is at most a + r J.
     pub tolerance: [f64; 2],
-    /// Number of steps in a row with a decrease below `tolerance` that ends a search.
+    /// Number of steps in a row with a small decrease at which a search has converged.
     pub max_small_steps: usize,
 }
 
@@ -93,7 +93,7 @@ impl NormalEquations {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), gradient: DVector::zeros(unknowns) }
     }
 
-    /// `true` if an unknown lies at a bound and its gradient points outwards.
+    /// `true` if an unknown with this value lies at a bound, beyond which J decreases.
     pub fn is_bound_active(&self, unknown: usize, value: f64, [low, high]: [f64; 2]) -> bool {
         (value <= low && self.gradient[unknown] < 0.0) || (value >= high && self.gradient[unknown] > 0.0)
     }
@@ -126,7 +126,8 @@ impl StepWorkspace {
         }
     }
 
-    /// Predicted decrease of J by a damped step, which is computed; `None` if the step is not finite.
+    /// Computes a damped step and returns the predicted decrease of J; `None` if the damped matrix is not positive
+    /// definite or the step is not finite.
     fn damped_step(&mut self, normal: &NormalEquations, damping: f64) -> Option<f64> {
         let unknowns = self.right.len();
         for j in 0..unknowns {

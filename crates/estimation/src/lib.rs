@@ -2,7 +2,7 @@
 //!
 //! | for | read |
 //! |---|---|
-//! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`lanes`] |
+//! | sums over columns of numbers, with the same bits on every machine | [`mod@column`], [`rows`], [`lanes`] |
 //! | the discrete Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother | [`kalman`] |
 //! | exact discretisation of linear stochastic systems, and sample paths | [`stochastic`] |

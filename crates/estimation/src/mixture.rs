@@ -8,7 +8,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// Number of bisections for a quantile.
 const BISECTIONS: usize = 100;
 
-/// Mean and, if they exist, the standard deviation and the interval from the 2.5 % to the 97.5 % quantile.
+/// Estimate, with its standard deviation and its interval from the 2.5 % to the 97.5 % quantile; `None` if these do not
+/// exist.
 pub type MixtureSummary = (f64, Option<(f64, [f64; 2])>);
 
 /// Mixture of normal distributions; weights need not sum to one.
@@ -82,8 +83,9 @@ impl NormalPair {
 /// Ratio of numerator to denominator in the most probable model, with standard deviation and 95 % interval over all
 /// models.
 ///
-/// P(b/a < k) = P(b − k a < 0), and b − k a is normal in every model (Fieller 1954). No interval is given if the 95 %
-/// interval of the denominator contains zero.
+/// P(b/a < k) = P(b − k a < 0) for a denominator a > 0, and b − k a is normal in every model (Fieller 1954); for a < 0
+/// the signs are reversed. No interval is given if the 95 % interval of the denominator contains zero, or if a variance
+/// of the denominator is not finite. Without a model the ratio is NaN.
 pub fn ratio_summary(pairs: &[NormalPair]) -> MixtureSummary {
     let best = pairs.iter().max_by(|left, right| left.weight.total_cmp(&right.weight));
     let Some(best) = best else { return (f64::NAN, None) };

@@ -1,5 +1,5 @@
-//! Number types of the equations: plain values, and dual numbers, which carry derivatives. One replay in dual numbers
-//! gives the heading and its exact sensitivities to several parameters (forward automatic differentiation).
+//! Number types of equations: plain values, and dual numbers, which carry derivatives. One evaluation in dual numbers
+//! gives a result and its exact derivatives with respect to several parameters (forward automatic differentiation).
 //!
 //! Equations are written once, for any [`Real`]; the values are computed by the same operations in all types.
 //!
@@ -8,7 +8,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Number type of an equation: a value, or a value with derivatives. Comparisons use the values.
+/// Number type of an equation: a value, or a value with derivatives. [`abs`](Self::abs), [`at_least`](Self::at_least)
+/// and [`clamped`](Self::clamped) compare the values alone; equality includes the derivatives.
 pub trait Real:
     Copy
     + Debug
@@ -31,10 +32,10 @@ pub trait Real:
     /// Value without derivatives.
     fn value(self) -> f64;
 
-    /// Function of this number, from its value and its derivative (chain rule).
+    /// Function of this number, given its value and its derivative `slope` with respect to this number (chain rule).
     fn lift_unary(self, value: f64, slope: f64) -> Self;
 
-    /// Function of two numbers, from its value and its total differential `by(dx, dy)`.
+    /// Function of this number x and another number y, given its value and its total differential `by(dx, dy)`.
     fn lift_binary(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self;
 
     /// Power of a positive number.
@@ -47,7 +48,7 @@ pub trait Real:
         (self.lift_unary(sin, cos), self.lift_unary(cos, -sin))
     }
 
-    /// Angle of the point (x, y), with this number as y.
+    /// Angle of the point (x, y), rad, with this number as y.
     #[inline]
     fn atan2(self, x: Self) -> Self {
         let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
@@ -104,7 +105,7 @@ pub trait Real:
         if self.value() < 0.0 { -self } else { self }
     }
 
-    /// Maximum of the number and a constant; at equality the number.
+    /// Maximum of this number and a constant; this number, with its derivatives, if they are equal.
     fn at_least(self, least: f64) -> Self {
         if self.value() >= least { self } else { Self::from(least) }
     }

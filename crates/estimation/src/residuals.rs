@@ -10,7 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 /// Series of residuals on an even time grid with gaps: values, each with its grid index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GappedSeries {
-    /// Grid spacing, s: the usual time between headings.
+    /// Grid spacing, s: the usual time between values.
     pub spacing: f64,
     /// Grid index of every value; the first is 0.
     steps: Vec<usize>,
@@ -19,12 +19,15 @@ pub struct GappedSeries {
 }
 
 impl GappedSeries {
-    /// Series of a residual (NaN where missing) at times in s, whose usual spacing is `period` seconds.
+    /// Series of a residual (NaN where missing) at times in s, whose rows are usually `period` seconds apart.
+    ///
+    /// The spacing of the grid is the lower quartile of the intervals between values, rounded to a multiple of
+    /// `period`.
     pub fn new(time: &[f64], residual: &[f64], period: f64) -> Self {
         let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
         let intervals = || rows.windows(2).map(|pair| (time[pair[1]] - time[pair[0]]) / period);
         let mut sorted: Vec<f64> = intervals().collect();
-        // Lower quartile: headings may be missing at random, or recorded in every tenth row.
+        // Lower quartile: values may be missing at random, or exist in every tenth row only.
         let quarter = sorted.len() / 4;
         let usual = match sorted.len() {
             0 => 1.0,
@@ -55,18 +58,18 @@ pub struct WhitenessTest {
     pub p_value: f64,
 }
 
-/// Maximum lag of the whiteness test, in grid steps.
+/// Maximum lag of the whiteness test, in grid steps, however many residuals there are.
 const MAX_LAG: usize = 20;
 
-/// Number of lags of the whiteness test of `count` residuals.
+/// Maximum lag of the whiteness test of `count` residuals, in grid steps.
 pub fn whiteness_lags(count: usize) -> usize {
     MAX_LAG.min(count / 4)
 }
 
 /// Whiteness test of the residuals of several records, pooled.
 ///
-/// Q = n (n + 2) Σ ρ²/(n − k) (Ljung and Box 1978); with missing values every ρ is weighted by its number of pairs
-/// (Stoffer and Toloi 1992).
+/// Q = n (n + 2) Σ ρ²/(n − k) (Ljung and Box 1978), with ρ = Σ x_i x_j / Σ x² at lag k. With missing values the number
+/// of pairs at that lag takes the place of n − k (Stoffer and Toloi 1992). The p-value is 1 without pairs.
 pub fn whiteness_test(residuals: &[GappedSeries]) -> WhitenessTest {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
@@ -131,18 +134,19 @@ pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelatio
 pub struct SpectralLine {
     /// Frequency, Hz.
     pub frequency: f64,
-    /// Share of the mean square, from 0 to 1.
+    /// Share of the mean square about the mean, from 0 to 1.
     pub share: f64,
 }
 
 /// Maximum number of grid points per value for which a spectrum is computed.
 const MAX_POINTS_PER_VALUE: usize = 16;
 
-/// Periodogram: the share of the mean square at every multiple of the lowest frequency.
+/// Periodogram: the share of the mean square about the mean at every multiple of the frequency of one period per
+/// series.
 ///
 /// With missing values, the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares sine.
 /// On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than four
-/// values, or if nearly all grid points are gaps.
+/// values, or for more than 16 grid points per value.
 pub fn periodogram(series: &GappedSeries) -> Vec<SpectralLine> {
     let (n, span) = (series.values.len(), series.span());
     if n < 4 || span > MAX_POINTS_PER_VALUE * n {
@@ -186,7 +190,8 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
 }
 
 /// p-value of constant variance: probability that normal numbers with one variance have a cumulative sum of squares as
-/// far from a straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large.
+/// far from a straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large. It is an
+/// upper bound (Bonferroni), and 1 if all numbers are zero or one is not finite.
 pub fn constant_variance_p_value(numbers: &[f64]) -> f64 {
     let n = numbers.len() as f64;
     let total: f64 = numbers.iter().map(|x| x * x).sum();
@@ -204,7 +209,8 @@ pub fn constant_variance_p_value(numbers: &[f64]) -> f64 {
     (2.0 * cusum.min(outlier)).min(1.0)
 }
 
-/// Kolmogorov distribution: probability that a Brownian bridge exceeds ±x, 2 Σ (−1)^(k+1) exp(−2 k² x²).
+/// Survival function of the Kolmogorov distribution: probability that a Brownian bridge leaves the band ±x,
+/// 2 Σ (−1)^(k+1) exp(−2 k² x²).
 fn kolmogorov(x: f64) -> f64 {
     if x < 0.3 {
         return 1.0;

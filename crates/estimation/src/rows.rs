@@ -10,9 +10,10 @@ use crate::lanes::{Kernel, run};
 const SUMS: usize = 4;
 
 /// Orthonormalises the first `L` of `C` columns and projects the last `M` columns off them; returns the last columns
-/// and the triangular factor: in row j the components of all columns along column j, on the diagonal its length before.
+/// and the triangular factor. Row j of the factor holds the components of the later columns along column j, and on the
+/// diagonal the length of column j before its normalisation.
 ///
-/// L + M = C. The rows keep the orthonormal columns. A column of zeros stays.
+/// L + M = C. The rows keep the orthonormal columns. A column of zeros remains zero.
 pub fn orthonormalise<const C: usize, const L: usize, const M: usize>(
     rows: &mut [[f64; C]],
 ) -> ([Vec<f64>; M], [[f64; C]; L]) {
@@ -128,7 +129,7 @@ mod tests {
         assert_eq!(orthonormalise::<2, 1, 1>(&mut rows), ([vec![1.5; 7]], [[0.0, 0.0]]));
     }
 
-    /// [`Orthonormalise`] of its own rows.
+    /// [`Orthonormalise`] that owns its rows.
     struct Orthonormalised(Vec<[f64; 3]>);
 
     impl Kernel for Orthonormalised {

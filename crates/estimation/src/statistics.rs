@@ -3,7 +3,7 @@
 //! Sources: Hyndman and Fan (1996), The American Statistician 50:361-365; Wilson (1927), Journal of the American
 //! Statistical Association 22:209-212.
 
-/// Maximum number of values that are sorted for their median: a selection costs more.
+/// Maximum number of values that are sorted for their median: for so few a selection costs more.
 const MAX_SORTED: usize = 16;
 
 /// Median; for an even number of values the mean of the two middle values, so that the median of a mirrored set is
@@ -43,8 +43,8 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     if part == 0.0 || low == high { low } else { low + part * (high - low) }
 }
 
-/// Score interval of a proportion observed in `cases` independent cases (Wilson 1927); `quantile` is the quantile of
-/// the standard normal distribution, 1.96 for 95 %. [0, 1] if there are no cases.
+/// Score interval of a proportion `share`, from 0 to 1, observed in `cases` independent cases (Wilson 1927); `quantile`
+/// is the quantile of the standard normal distribution, 1.96 for 95 %. [0, 1] if there are no cases.
 pub fn wilson_interval(share: f64, cases: f64, quantile: f64) -> [f64; 2] {
     if cases <= 0.0 {
         return [0.0, 1.0];

@@ -58,8 +58,8 @@ impl<const N: usize> System<N> {
 }
 
 impl System<MAX_STATES> {
-    /// Whitener of the first `states` states, with the remaining states zero; `tolerance` is the tolerance of a
-    /// stationary gain.
+    /// Whitener of the first `states` states, with the remaining states zero; `tolerance` is the relative change below
+    /// which a gain is stationary.
     pub fn whitener(&self, states: usize, tolerance: f64) -> Whitener {
         with_states!(states, N => {
             let first = |wide: &[[f64; MAX_STATES]; MAX_STATES]| -> [[f64; N]; N] {

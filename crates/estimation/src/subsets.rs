@@ -5,8 +5,9 @@
 //! log Z_R − log Z = −½ Δᵀ Σ_ss⁻¹ Δ − log p(R neutral) − ½ log |2π Σ_RR|,
 //!
 //! with the distance Δ of the amplitudes (sizes) of R from their neutral values, the posterior covariance Σ of all
-//! fitted unknowns, and the prior density p. It is the Savage–Dickey density ratio for the amplitudes; shape parameters
-//! are unconstrained without their amplitude and count with their prior range.
+//! fitted unknowns (Σ_ss its block of these amplitudes, Σ_RR its block of all unknowns of R), and the prior density p.
+//! It is the Savage–Dickey density ratio for the amplitudes; shape parameters are unconstrained without their amplitude
+//! and count with their prior range.
 //!
 //! All 2^m subsets share factors: a removed term adds one row to a Cholesky factor.
 //!
@@ -36,7 +37,9 @@ struct GrowingFactor<'a> {
     unknowns: Vec<usize>,
     rows: Vec<Vec<f64>>,
     solution: Vec<f64>,
+    /// log |L Lᵀ| of every leading block.
     log_determinant: Vec<f64>,
+    /// Sum of squares of z up to every row.
     square: Vec<f64>,
 }
 
@@ -124,7 +127,8 @@ impl SubsetWalk<'_> {
     }
 }
 
-/// Conditional mean of the unknowns if the amplitudes of the removed terms are neutral (quadratic approximation).
+/// Conditional mean of the unknowns if the amplitudes of the removed terms are neutral (quadratic approximation about
+/// `at`); `at` itself if the covariance of these amplitudes is not positive definite.
 pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&RemovableTerm]) -> DVector<f64> {
     let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.sizes.iter().copied()).collect();
     let block = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
@@ -142,7 +146,7 @@ pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &
     })
 }
 
-/// Conditioning of a covariance, in place, on neutral amplitudes of a term.
+/// Conditions a covariance, in place, on neutral amplitudes of a term.
 pub fn condition_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
     for &(unknown, _) in &out.sizes {
         let column: DVector<f64> = covariance.column(unknown).into();

@@ -4,7 +4,8 @@
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;
 
-/// |X_k|² for k = 0 … N/2, not divided by N (N times Ljung's periodogram); overwrites `x`, empty for an empty `x`.
+/// Squared magnitudes |X_k|² of the discrete Fourier transform of the N values `x`, k = 0 … N/2, not divided by N: N
+/// times Ljung's periodogram. Overwrites `x`; empty for an empty `x`.
 pub fn power_spectrum(x: &mut [f64]) -> Vec<f64> {
     fourier_transform(x).into_iter().map(|z| z.norm_sqr()).collect()
 }

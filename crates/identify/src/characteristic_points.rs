@@ -99,9 +99,9 @@ impl Settings {
 /// The covariance comes from the residuals of few equations, with Student's t for its intervals, and excludes bias.
 /// Diagnostics give K and T by side, which shows an asymmetric ship.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] if the record does not hold three instants with r = 0 and a passage of
-/// the base course, with [`IdentifyError::Singular`] if the selected points do not determine T or δ_r, and with
-/// [`IdentifyError::NotAShip`] if K/T is not positive.
+/// Fails with [`IdentifyError::TooFewPoints`] if the records do not hold three instants with r = 0 (two with a given
+/// δ_r) and a passage of the base course, with [`IdentifyError::Singular`] if the selected points do not determine T or
+/// δ_r, and with [`IdentifyError::NotAShip`] if K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CharacteristicPoints {
     settings: Settings,

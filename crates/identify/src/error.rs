@@ -24,7 +24,7 @@ pub enum IdentifyError {
         /// Range of the heading, deg.
         heading_deg: f64,
     },
-    /// Times or angles beyond any manoeuvre, whose powers overflow.
+    /// Duration outside 1e-6 to 1e9 s, or an angle above 1e6 rad: powers of such numbers may overflow.
     #[error(
         "{trial} is not a manoeuvre: it lasts {duration_s:.1e} s and its angles reach {angle_rad:.1e} rad; check the units \
         of its columns"
@@ -78,7 +78,7 @@ pub enum IdentifyError {
     NotConverged {
         /// Number of iterations.
         iterations: usize,
-        /// Last relative step.
+        /// Last relative step, dimensionless.
         step: f64,
     },
     /// The record does not show that the rudder acts, as in a steady turn, which does not separate K from δ_r.

@@ -175,7 +175,7 @@ impl Covariance {
     ///
     /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and q = ν
     /// (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a given variance. `None` if the region of 1/T contains
-    /// zero, so that T is unbounded, and without a covariance.
+    /// zero, so that T is unbounded, or if the variance of 1/T is zero or not finite.
     pub fn joint_region_outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
         const CORNERS: usize = 120;
         let exceedance: f64 = 0.05;

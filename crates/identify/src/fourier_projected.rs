@@ -9,8 +9,8 @@
 //! white noise, truncation included, so that it is not overconfident for a quiet record.
 //!
 //! Neighbouring rows of a record of more than 50 000 rows are averaged, rudder and heading alike: the equation is
-//! linear, so the averages satisfy it, and the shortest possible harmonic still has some 800 rows. The noise is then
-//! the noise of the means.
+//! linear, so the averages satisfy it, and a period of the shortest possible harmonic still has some 400 rows or more.
+//! The noise is then the noise of the means.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
 //! by generalised cross-validation (Golub, Heath and Wahba 1979).
@@ -104,6 +104,8 @@ impl Default for Settings {
 
 impl Settings {
     /// Method with these settings, which are checked.
+    ///
+    /// Fails if a number of harmonics is outside 1 to 64, a reach outside 1.5 to 50, or the rule for w is not valid.
     pub fn build(self) -> Result<FourierProjected, SettingsError> {
         match self.harmonics {
             Order::Fixed(fixed) => require((1..=MAX_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
@@ -128,18 +130,18 @@ pub struct FourierProjected {
     max_rows: usize,
 }
 
-/// Heading and rudder of one trial as Fourier curves of one basis, for a figure.
+/// Heading and rudder of one trial as Fourier curves of one basis, for a plot.
 #[derive(Debug, Clone)]
 pub struct Curves {
     /// Heading curve.
     pub heading: FittedSeries,
     /// Rudder curve; [`FourierSeries::heading_at`] gives the projected rudder angle, rad.
     pub rudder: FourierSeries,
-    /// Beginning and end, s from the first observed row.
+    /// First and last instant of the curves, s from the first observed row.
     pub window: [f64; 2],
 }
 
-/// Rows of a trial.
+/// Rows of a trial: time (s), heading and rudder (rad).
 struct SeriesRows {
     time: Vec<f64>,
     heading: Vec<f64>,
@@ -184,7 +186,7 @@ impl FourierProjected {
     pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
         let part = SeriesRows::from_samples(Samples::new(trial, MIN_ROWS)?).averaged(self.max_rows);
         let heading = self.fit(&part)?;
-        let rudder = heading.basis.curve(&heading.basis.project(&part.rudder));
+        let rudder = heading.basis.fourier_series(&heading.basis.project(&part.rudder));
         Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
     }
 
@@ -216,7 +218,7 @@ impl FourierProjected {
             .expect("the range holds at least its end");
         let basis = series.basis(harmonics);
         let projection = basis.project(heading);
-        let curve = basis.curve(&projection);
+        let curve = basis.fourier_series(&projection);
         accept(FittedSeries { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
     }
 

@@ -80,6 +80,9 @@ impl Default for Settings {
 
 impl Settings {
     /// Method with these settings, which are checked.
+    ///
+    /// Fails if the number of harmonics is outside 1 to 64 or of triples outside 1 to 10 000, or if the rule for w is
+    /// not valid.
     pub fn build(self) -> Result<FourierPublished, SettingsError> {
         require((1..=MAX_HARMONICS).contains(&self.harmonics), "harmonics", self.harmonics, "1 to 64")?;
         require((1..=MAX_TRIPLES).contains(&self.triples), "triples", self.triples, "1 to 10000")?;
@@ -89,13 +92,16 @@ impl Settings {
 }
 
 /// Published Fourier method.
+///
+/// Fails with [`IdentifyError::TooFewPoints`] if too few triples are usable, and with [`IdentifyError::NotAShip`] if
+/// K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierPublished {
     settings: Settings,
 }
 
 impl FourierPublished {
-    /// Fitted heading of one trial, for a figure; time runs from the first observed row.
+    /// Fitted heading of one trial, for a plot; time runs from the first observed row.
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
     pub fn curve(&self, trial: &Trial) -> Result<FittedSeries, IdentifyError> {

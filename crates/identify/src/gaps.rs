@@ -6,7 +6,8 @@ use std::ops::Range;
 /// Maximum interval that is not a gap, in mean intervals, without a setting.
 const GAP_INTERVALS: f64 = 5.0;
 
-/// Maximum interval, s, that is not a gap: the setting, or five mean intervals of the record.
+/// Maximum interval, s, that is not a gap: the setting, or five mean intervals of the record; infinite with fewer than
+/// two times.
 pub fn gap_threshold(setting_s: Option<f64>, time: &[f64]) -> f64 {
     setting_s.unwrap_or_else(|| match time {
         [first, .., last] => GAP_INTERVALS * (last - first) / (time.len() - 1) as f64,
@@ -14,7 +15,7 @@ pub fn gap_threshold(setting_s: Option<f64>, time: &[f64]) -> f64 {
     })
 }
 
-/// Ranges of rows between gaps, in order; `time` (s) increases.
+/// Ranges of rows between gaps, in order; `time` (s) increases, and an interval above `longest_gap` (s) is a gap.
 pub fn gap_free_ranges(time: &[f64], longest_gap: f64) -> impl Iterator<Item = Range<usize>> {
     let mut from = 0;
     std::iter::from_fn(move || {

@@ -33,7 +33,7 @@ use crate::estimate::Estimate;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Identifier: Send + Sync {
-    /// Identifier used in scenario files, tables and JSON.
+    /// Name of the method in scenario files, tables and JSON.
     fn id(&self) -> &'static str;
 
     /// Summary of the method in one line, for lists.

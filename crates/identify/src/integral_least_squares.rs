@@ -3,7 +3,7 @@
 //! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state enters through c₀ and c₁,
 //! which differ between the stretches between gaps; a, b and b δ_r are common to all stretches of all trials. The
 //! method is nearly as precise as output error for white heading noise; it does not model a yaw disturbance. The
-//! iteration that removes the remaining loss belongs to the output-error and instrumental-variable methods. Source of
+//! output-error and instrumental-variable methods iterate, which removes the remaining loss of precision. Source of
 //! the integral-equation approach: Unbehauen and Rao (1987), Identification of Continuous Systems.
 
 mod equations;
@@ -68,8 +68,8 @@ impl Settings {
 /// The covariance is for white heading noise n propagated through the equation, e = n + a ∫n, with the variance of n
 /// estimated from the residual. The robust covariance (Newey and West 1987) takes the estimated noise row by row, so it
 /// is also valid for coloured heading noise; neither is valid for a lasting yaw disturbance. Neither includes the bias
-/// by the noise of ∫ψ, a regressor, which biases 1/T towards zero if headings are too sparse: with an interval beyond T
-/// / 2 the interval of T contains the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
+/// by the noise of ∫ψ, a regressor, which biases 1/T towards zero if headings are too sparse: with more than T/2
+/// between headings the 95 % interval of T contains the truth in 85 of 100 records, with more than 2 T in 65.
 ///
 /// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] if K/T is not
 /// positive. A negative 1/T is a valid estimate: the ship is course-unstable.

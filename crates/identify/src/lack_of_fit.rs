@@ -64,8 +64,8 @@ pub struct LackOfFit {
 }
 
 impl LackOfFit {
-    /// Lack of fit of a response to its records; `None` if a replay is not finite, or for too few headings to estimate
-    /// their noise.
+    /// Lack of fit of a response to its records; `None` without a record, if a replay is not finite, or for too few
+    /// headings to estimate their noise.
     pub fn from_response(trials: &[Trial], response: &FirstOrder) -> Option<Self> {
         let (mut residual, mut pieces) = (Vec::new(), Vec::new());
         let mut terms: Vec<Vec<f64>> = Vec::new();
@@ -110,7 +110,7 @@ impl LackOfFit {
     }
 
     /// Share, from 0 to 1, of the residual beyond the noise that the ship terms do not explain: small for a missing
-    /// term, large for random moments. `None` for a white residual.
+    /// term, large for random moments. `None` for a residual that is white or not larger than the noise.
     pub fn unexplained_share(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise_sd * self.noise_sd).max(0.0);
         let all = beyond(self.residual);
@@ -195,7 +195,8 @@ fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Ve
     headings
 }
 
-/// Slope of a signal that is linear between rows, the mean of both sides.
+/// Slope of a signal in every row: that of the chord between the rows before and after, and at an end that of the last
+/// interval.
 fn slopes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let slope = |from: usize, to: usize| (values[to] - values[from]) / (time[to] - time[from]);

@@ -1,6 +1,6 @@
 //! Identification of the manoeuvrability indices K and T (and the rudder bias δ_r) from recorded trials.
 //!
-//! Every method is one file and one line in [`registry`], all behind one trait, [`Identifier`]: settings first, then
+//! Every method is one module and one line in [`registry`], all behind one trait, [`Identifier`]: settings first, then
 //! trials, then an [`Estimate`] or a typed [`IdentifyError`]. There is no dependency on the simulator: a method has
 //! only the record.
 //!
@@ -14,9 +14,9 @@
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `maximum-likelihood` | maximum likelihood under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
-//! | `recommended` | output error or maximum likelihood, by a rule made from the record |
+//! | `recommended` | output error or maximum likelihood, selected by a rule on the record |
 //!
-//! Of several estimates [`verdict`] selects the recommended one, or rejects all.
+//! Among several estimates, [`verdict`] selects the recommended estimate, or rejects all.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 pub mod characteristic_points;

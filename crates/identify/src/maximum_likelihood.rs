@@ -34,8 +34,8 @@ use crate::identifier::Identifier;
 use crate::settings::{SettingsError, check_iterations};
 
 /// Times, s, of the outliers of every record: single spikes and sentinels such as −999, isolated in the residual of
-/// `output-error`. No times if more than a tenth of the readings are outliers: the noise then follows another law.
-/// Fails as `output-error` does.
+/// `output-error`. No times if more than a tenth of the readings of a record are outliers: the noise then follows
+/// another law. Fails as `output-error` does.
 pub fn spike_times(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
     Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
@@ -49,6 +49,8 @@ impl Settings {
 }
 
 /// Method of maximum likelihood under a random yaw moment, rudder error and coloured compass error.
+///
+/// Fails as [`OutputError`](crate::output_error::OutputError) does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaximumLikelihood {
     settings: Settings,

@@ -10,7 +10,8 @@ use crate::replay::pooled_response_rms;
 
 /// Entry of a successful fit.
 ///
-/// `heading_rmse_deg` is the rms heading error of the replay, deg. Diagnostics that are not finite are left out.
+/// `heading_rmse_deg` is the rms heading error of the replay, deg, `None` without a finite replay. Diagnostics that are
+/// not finite are left out.
 pub fn success_entry(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> MethodEntry {
     let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());
     MethodEntry {

@@ -4,8 +4,8 @@
 //! For a given 1/T the heading is linear in the others; 1/T alone is searched. The profiled sum of squares is scanned
 //! over both signs of 1/T. Every local minimum is refined by variable projection with exact sensitivities (Golub and
 //! Pereyra 1973; Kaufman 1975), first on a part of the rows; unless it is far above the lowest, then on all rows. The
-//! lowest minimum is the estimate. It is the global one unless that is narrower than the scan. Source of the method:
-//! Ljung (1999), System Identification: Theory for the User, chapter 7.
+//! lowest minimum is the estimate. It is the global minimum, unless the valley of the global minimum lies between two
+//! points of the scan. Source of the method: Ljung (1999), System Identification: Theory for the User, chapter 7.
 
 use document::WarningCode;
 use nalgebra::Matrix3;
@@ -30,7 +30,7 @@ use crate::settings::{SettingsError, check_iterations, require};
 pub struct Settings {
     /// Number of points of the scan per decade of |1/T|, for each sign.
     pub grid_per_decade: usize,
-    /// Minimum |T| searched, s; `None` is half a sampling period.
+    /// Minimum |T| searched, s; half a sampling period if omitted.
     pub smallest_time_constant_s: Option<f64>,
     /// Maximum number of steps in the refinement of a minimum.
     pub iterations: usize,
@@ -57,6 +57,10 @@ impl Settings {
 }
 
 /// Method of maximum likelihood by simulation, global in 1/T.
+///
+/// Fails with [`IdentifyError::NotAShip`] if the best fit has K/T ≤ 0 and no fit with a positive K/T is a minimum
+/// inside the range of 1/T, with [`IdentifyError::Singular`] if the record does not separate 1/T, K/T and δ_r, and with
+/// [`IdentifyError::NoRudderEffect`] if K/T is less than two standard deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputError {
     settings: Settings,
@@ -65,7 +69,7 @@ pub struct OutputError {
 /// Maximum number of points of the scan per decade; a finer scan finds no further local minimum.
 const MAX_POINTS_PER_DECADE: usize = 1000;
 
-/// Accepted time constants, s, at the end of the scan.
+/// Accepted values of `smallest-time-constant-s`, s.
 const TIME_CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Minimum |1/T| of the scan, in units of one over the length of the record: below it the response is
@@ -82,7 +86,7 @@ struct Goal {
     bar: f64,
 }
 
-/// Relative tolerance for "at its bound".
+/// Relative distance from the end of the scan within which 1/T counts as at its bound.
 const BOUND_TOLERANCE: f64 = 1e-6;
 
 /// Relative step at convergence of the refinement.
@@ -124,7 +128,9 @@ pub(crate) const MIN_GAIN_DEVIATIONS: f64 = 2.0;
 
 /// Refined minimum of the profiled sum of squares.
 struct PolishedMinimum {
+    /// 1/T, 1/s.
     inverse_T: f64,
+    /// Sum of squares, rad².
     rss: f64,
     stop: StopReason,
     iterations: usize,
@@ -151,7 +157,8 @@ impl OutputError {
         Goal { tolerance: TOLERANCE, iterations: self.settings.iterations, bar: f64::INFINITY }
     }
 
-    /// Variable projection from a start, with step halving; it never leaves a lower point for a higher point.
+    /// Variable projection from a 1/T, `start`, with step halving; it never leaves a lower point for a higher point.
+    /// `resolution` (1/s) is added to |1/T| in the tolerance. `None` if a value is not finite or b is not positive.
     ///
     /// Ends when a step is below the tolerance, its predicted decrease is below the rounding of the sum of squares, or
     /// the valley cannot fall below the bar.

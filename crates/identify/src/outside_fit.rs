@@ -25,7 +25,7 @@ pub struct OutsideFit {
 pub enum OutsideErrors {
     /// Not reported.
     Unknown,
-    /// Standard deviations.
+    /// Standard deviations; `None` where none is reported.
     Deviations([Option<f64>; 3]),
     /// Covariance of (K, T, δ_r).
     Covariance(Matrix3<f64>),
@@ -43,7 +43,7 @@ impl OutsideFit {
     ///
     /// With J = ∂(1/T, K/T, δ_r)/∂(K, T, δ_r) the covariance is J C Jᵀ; C is diagonal if only standard deviations are
     /// given. A δ_r without an error has no error in the estimate, either. Fails with [`IdentifyError::NotAShip`]
-    /// unless K/T > 0.
+    /// unless K/T > 0, and with [`IdentifyError::Outside`] if δ_r is not finite.
     pub fn estimate(&self) -> Result<Estimate, IdentifyError> {
         let Self { K, T, rudder_bias, .. } = *self;
         let response = FirstOrder::from_indices(K, T, rudder_bias);

@@ -17,15 +17,15 @@ const MAX_DEVIATIONS: f64 = 2.0;
 /// Relative tolerance of a rudder rate from a record.
 const RATE_TOLERANCE: f64 = 0.05;
 
-/// Maximum ratio of the largest speed of a record and its approach speed: a current of two knots is a fifth of ten. A
-/// ship that gathers way has most of her speed at the first execute.
+/// Maximum ratio between the largest speed of a record and its approach speed, either way: a current of two knots is a
+/// fifth of ten. A ship that gathers way has most of her speed at the first execute.
 const MAX_SPEED_RATIO: f64 = 1.25;
 
 /// Warning on unusual values of an estimate and of its records; `None` for usual values.
 ///
 /// A contradiction between length and speed, or with the record, is reported first. The other checks need zig-zags: a
-/// turn alone hardly determines K′ = K L/U, T′ = T U/L and K′/T′. `ship` is at the scale of the estimate, `records` at
-/// their own scale.
+/// turn alone hardly determines K′ = K L/U, T′ = T U/L and K′/T′. `ship` is at the scale of the estimate, every one of
+/// `records` at the scale of its measurement.
 pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[Trial]) -> Option<Warning> {
     if let Some(contradiction) = records.iter().find_map(other_scale) {
         return Some(contradiction);
@@ -54,7 +54,7 @@ pub fn unusual_ship(estimate: &Estimate, ship: Option<Particulars>, records: &[T
 /// Advice for a length and speed of different scales.
 const SAME_SCALE: &str = "length, speed and record must be of the same scale, all of the ship or all of the model";
 
-/// Warning on an impossible Froude number: length and speed are not of the same scale.
+/// Warning on an impossible Froude number: length and speed are not of the same scale. `None` for a usual number.
 pub fn unusual_froude_number(Particulars { length, speed }: Particulars) -> Option<Warning> {
     let froude = HullParticulars { length, speed, ..HullParticulars::default() }.froude_number();
     let [low, high] = USUAL_FROUDE_NUMBER;

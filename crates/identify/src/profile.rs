@@ -32,8 +32,9 @@ struct TrialColumns {
 #[derive(Debug)]
 pub(crate) struct Profile {
     parts: Vec<TrialColumns>,
+    /// b (1/s²) and b δ_r (rad/s²).
     steering: Vector2<f64>,
-    /// Last evaluated point and the sum of squares there.
+    /// Last evaluated 1/T (1/s) and the sum of squares there (rad²), `None` without a ship.
     last: Option<(f64, Option<f64>)>,
     /// Number of evaluations.
     pub evaluations: usize,

@@ -8,8 +8,8 @@
 //! such moment. If terms of a ship explain the residual, the model lacks a term. A random moment then substitutes for
 //! it, and K, T of maximum likelihood describe small and fast motions. An estimate of maximum likelihood without an
 //! interval of K is never recommended: its random moment explains the manoeuvre. Its replay error may exceed the error
-//! of output error, as for the true ship under strong random moments, by a factor of at most 30. The rule was made for
-//! this project; METHODOLOGY documents its limits.
+//! of output error, as for the true ship under strong random moments, by a factor of at most 30. The rule is not
+//! from the literature; METHODOLOGY documents its limits.
 //!
 //! As a method it fits both models and returns the recommended estimate, so that a study can test the rule.
 
@@ -34,7 +34,7 @@ const MIN_RANDOM: f64 = 0.33;
 /// the moment would have to cancel the steering. In gusts the ratio is at most about five.
 const MAX_REPLAY_RATIO: f64 = 30.0;
 
-/// Reason for a recommendation, and the figures from which it follows; [`Self::method`] is the method.
+/// Reason for a recommendation, and the values from which it follows; [`Self::method`] is the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recommendation {
     /// Reason for the recommendation.
@@ -81,7 +81,7 @@ impl Recommendation {
         }
     }
 
-    /// Kind of the residual of output error.
+    /// Kind of the residual of output error; `None` without a lack of fit.
     pub fn residual(&self) -> Option<ResidualKind> {
         let share = self.lack?.unexplained_share();
         Some(share.map_or(ResidualKind::Noise, |share| {

@@ -41,7 +41,7 @@ macro_rules! methods {
     };
 }
 
-// The key in a scenario is the name in kebab-case; in brackets is the file. Order as in reports.
+// The key in a scenario is the name in kebab-case; in brackets is the module. Order as in reports.
 methods! {
     FourierPublished(fourier_published),
     FourierProjected(fourier_projected),

@@ -98,8 +98,8 @@ pub fn pooled_rms(replays: &[Replay]) -> f64 {
     (square / rows as f64).sqrt()
 }
 
-/// Heading and yaw rate at the anchor whose free motion, along 1 and φ₁, fits `free` best: the heading minus the
-/// response to the rudder.
+/// Heading (rad) and yaw rate (rad/s) at the anchor whose free motion, along 1 and φ₁, is nearest to `free`, the
+/// heading minus the response to rudder and bias.
 pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
     let rows = free.len() as f64;
     let (level, mean) = (sum(free) / rows, sum(homogeneous) / rows);

@@ -8,7 +8,8 @@ use nalgebra::Matrix3;
 
 use crate::estimate::{Covariance, Uncertainty};
 
-/// Minimum lag-1 autocorrelation of a coloured residual, if it exceeds the range of white noise.
+/// Minimum magnitude of the lag-1 autocorrelation of a coloured residual, which must also exceed the range of white
+/// noise.
 const MAX_WHITE_CORRELATION: f64 = 0.2;
 
 /// Covariance that a method reports: for a white residual the white covariance, for a coloured residual the robust

@@ -37,9 +37,10 @@ pub struct Samples {
 impl Samples {
     /// Samples of the observed rows of a trial.
     ///
-    /// Fails with [`IdentifyError::NotExcited`] if rudder or heading vary by less than half a degree, with
-    /// [`IdentifyError::OutOfRange`] if times or angles are beyond any manoeuvre, and with
-    /// [`IdentifyError::TooFewSamples`] if there are fewer than `needed` rows.
+    /// Fails with [`IdentifyError::TooFewSamples`] if there are fewer than `needed` finite headings, with
+    /// [`IdentifyError::OutOfRange`] if the time from the first to the last of them is not within 1e-6 and 1e9 s or an
+    /// angle exceeds 1e6 rad, and with [`IdentifyError::NotExcited`] if rudder or heading vary by less than half a
+    /// degree.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         check(trial, needed)?;
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());

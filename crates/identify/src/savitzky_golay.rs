@@ -26,7 +26,7 @@ pub struct SavitzkyGolay {
     pub order: usize,
 }
 
-/// Maximum number of rows of a window, which sets the computation per row of a record.
+/// Maximum number of rows of a window, which limits the computation per row of a record.
 const MAX_WINDOW_ROWS: usize = 10_001;
 
 impl Default for SavitzkyGolay {
@@ -94,7 +94,7 @@ impl<'a> WindowWeights<'a> {
         (self.weights.len() == window.len()).then_some((window, &self.weights))
     }
 
-    /// c₀, c₁ and c₂ at row `k`.
+    /// c₀, c₁ and c₂ at row `k`; `None` as for [`weights_at`](Self::weights_at).
     pub fn apply(&mut self, time: &[f64], value: &[f64], k: usize) -> Option<[f64; 3]> {
         let (window, weights) = self.weights_at(time, k)?;
         Some(
@@ -109,7 +109,7 @@ impl<'a> WindowWeights<'a> {
 /// Coefficients cₚ of Σ cₚ (t − `centre`)ᵖ, p ≤ `order`, fitted by least squares to points of equal weight; zero above.
 ///
 /// `time` and `value` have the same length; times differ. cₚ has the unit of the value over sᵖ. `None` if there are not
-/// more points than the order, or if the equations are singular.
+/// more points than the order, if the order exceeds [`MAX_ORDER`], or if the equations are singular.
 ///
 /// Source: Savitzky and Golay (1964), here for any spacing.
 pub fn local_polynomial(time: &[f64], value: &[f64], centre: f64, order: usize) -> Option<[f64; MAX_COEFFICIENTS]> {

@@ -84,7 +84,7 @@ impl Products {
     }
 }
 
-/// Pass over a track with its heading minus the mean, all lanes on one side of zero.
+/// Pass over a track with its heading minus the mean; 1/T has one sign in all lanes.
 struct Sweep<'a> {
     track: &'a Track,
     heading: &'a [f64],

@@ -40,7 +40,7 @@ pub(crate) fn check_iterations(key: &'static str, iterations: usize) -> Result<(
     require((1..=MAX_ITERATIONS).contains(&iterations), key, iterations, "1 to 1000")
 }
 
-/// Fails for a `condition-limit` of 1 or less, and NaN.
+/// Fails for a `condition-limit` of 1 or less, and for NaN.
 pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
     require(limit > 1.0, "condition-limit", ShortNumber(limit), "a number above 1")
 }

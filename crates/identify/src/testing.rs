@@ -1,5 +1,6 @@
 //! Zig-zag records of an exact first-order ship, for tests of this crate only: there is no integration error, so that a
-//! test measures only the method. The rudder is recorded at the rows and linear between them, as in a real record.
+//! test measures only the method. The rudder rests or moves at one rate, with corners between the rows, and is recorded
+//! at the rows.
 
 use std::collections::BTreeMap;
 
@@ -140,7 +141,7 @@ impl Case {
         let heading = truth
             .heading
             .iter()
-            // Half a step of the generator away from 0 and 1, if the quantile is infinite.
+            // Half a step of the generator away from 0 and 1, where the quantile is infinite.
             .map(|psi| psi + sd * normal.inverse_cdf((f64::from(generator.random::<u32>()) + 0.5) / 4294967296.0))
             .collect();
         record("zigzag", truth.time, heading, truth.rudder)
@@ -216,8 +217,8 @@ fn from_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64
     Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
 }
 
-/// Heading of `ship` from `start` under the rudder of these rows, exact for a rudder that is linear between rows and
-/// the corners between them.
+/// Heading, rad, at every time of `time` (s), of `ship` steered by `rudder` (rad) from the state `start`. It is exact
+/// if the rudder is linear between the rows and the detected corners of the rudder signal.
 pub fn steered(ship: &FirstOrder, start: State, time: &[f64], rudder: &[f64]) -> Vec<f64> {
     let blank = record("steering", time.to_vec(), vec![0.0; time.len()], rudder.to_vec());
     let path = blank.rudder_signal();

@@ -1,19 +1,18 @@
 //! Ship zig-zag trials: simulate them, identify the manoeuvrability indices K and T, trace what a first-order model
 //! lacks, and benchmark the methods against each other.
 //!
-//! It is the one crate to depend on and contains no code: it re-exports the parts, which are separate crates, under
-//! short names.
+//! This is the one crate to depend on. It contains no code, but re-exports separate crates under short names.
 //!
 //! | to | use |
 //! |---|---|
 //! | describe a ship, its effects, a hull | [`ship`] |
 //! | read a measured record, find its overshoots | [`trial`] |
 //! | find manoeuvres in a long log | [`find`] |
-//! | draw the track of a turn | [`simulate::motion`] |
+//! | compute the track of a turn | [`simulate::motion`] |
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
-//! | make a record | [`simulate`] |
+//! | simulate a record | [`simulate`] |
 //! | identify K, T and δ_r with intervals | [`identify`] |
-//! | the recommended estimate, or why there is none | [`identify::verdict`] |
+//! | choose an estimate, or state why none can be used | [`identify::verdict`] |
 //! | trace the effects that a first-order model lacks | [`trace`](mod@trace) |
 //! | read the documents of a fit, trace or prediction | [`document`] |
 //! | read a scenario file | [`scenario`] |

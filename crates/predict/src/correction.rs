@@ -1,6 +1,6 @@
 //! Correction of a trial in ballast to full load, or to another loading, by two models of the ship.
 //!
-//! R = T F / B of every figure of merit: T is measured in the condition of the trial, B is the prediction of the same
+//! R = T F / B of every characteristic: T is measured in the condition of the trial, B is the prediction of the same
 //! manoeuvre by a model of the ship in that condition, F by a model of the ship at the other loading. Errors common to
 //! both models cancel; other errors do not, so both models must be of the same method.
 //!
@@ -140,7 +140,7 @@ struct PairedManoeuvre {
     shown: Vec<(&'static str, Quantity)>,
 }
 
-/// Corrects the figures of merit of a record to a loading, [`FULL_LOAD`] or the name of another; both ships must be at
+/// Corrects the characteristics of a record to a loading, [`FULL_LOAD`] or the name of another; both ships must be at
 /// the scale of the record.
 ///
 /// R = T F/B, draw by draw; the 50 and 90 % intervals include the errors of both models, the random moment of one trial
@@ -210,7 +210,7 @@ fn zig_zag(
     Some(PairedManoeuvre { rudder: steered.kind.max_rudder(), full, trial, shown })
 }
 
-/// Turn of a record, simulated with both models; `None` for a record without a turn.
+/// Turn of a record, simulated with both models; `None` for a record without a turn or without an initial motion.
 fn turned(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -220,7 +220,7 @@ fn turned(
     let length = record.particulars().or(ballast.particulars()).map(|particulars| particulars.length);
     let turn = HeldTurn::from_trial(record).zip(turn::resampled_record(record, ballast.timescale(), length));
     let Some((turn, passage)) = turn.filter(|_| record.duration() > ballast.timescale()) else { return Ok(None) };
-    let measured = turn.figures(&passage).into_iter();
+    let measured = turn.characteristics_within_record(&passage).into_iter();
     let shown: Vec<_> = measured.filter_map(|(key, mean)| Some((key, Quantity::without_uncertainty(mean?)))).collect();
     let Some(rudder) = turn.extended_rudder(record.rudder_signal()).filter(|_| !shown.is_empty()) else {
         return Ok(None);
@@ -234,9 +234,11 @@ fn turned(
         let standard_normal: f64 = key.rng(RngPurpose::Heading).sample(StandardNormal);
         ship.yaw_rate = rate.0 + rate.1 * standard_normal;
         let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
-        let mut figures = turn.whole_figures(&passage);
+        let mut figures = turn.characteristics_to_end(&passage);
         // Characteristics at the end are read after the duration of the record for both ships.
-        figures.extend(turn.figures(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)));
+        figures.extend(
+            turn.characteristics_within_record(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)),
+        );
         Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| parallel_draws(draws, |number| sail(mixture, number)));
@@ -249,7 +251,7 @@ fn short(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-/// R = T F/B of one figure of merit; `None` if less than half of the pairs of ships have it.
+/// R = T F/B of one characteristic; `None` if less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<CorrectedFigure> {
     let value = |draw: &Option<SampleResult>| draw.as_ref()?.figures.get(name).copied()?;
     let sd = measured.sd.unwrap_or(0.0);
@@ -341,7 +343,7 @@ mod tests {
         assert!(all >= 80 && (0.80..=1.0).contains(&share), "{held} of {all}");
     }
 
-    /// Without uncertainty R is the figure of merit of the ship at full load, within the reading error of T.
+    /// Without uncertainty R is the characteristic of the ship at full load, within the reading error of T.
     #[test]
     fn without_doubt_the_answer_is_the_truth() {
         let [full, ballast] = ships().map(|mut identified| {

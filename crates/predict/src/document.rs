@@ -85,7 +85,7 @@ pub struct OtherLoading {
 }
 
 impl OtherLoading {
-    /// Name of the loading in messages and pages: full load if there is none.
+    /// Name of the loading in messages and pages; full load for `None`.
     pub fn name(load: Option<&Self>) -> String {
         load.map_or_else(|| FULL_LOAD.into(), |load| format!("the loading of {}", load.file))
     }

@@ -14,16 +14,16 @@ use crate::mixture::{
 pub struct DrawnParameters {
     /// Index of the file in the mixture.
     pub file: usize,
-    /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for none.
+    /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for a response without effects.
     pub structure: String,
     /// Probability of this structure or hull in the mixture.
     pub weight: f64,
-    /// Rate of the rudder, rad/s; `None` if the rudder moves at once.
+    /// Rate of the rudder, rad/s; `None` for an instantaneous rudder.
     pub gear_rate_rad_s: Option<f64>,
     /// Initial yaw rate, rad/s.
     pub yaw_rate_rad_s: f64,
-    /// Parameters by name: `K_over_T` and `EFFECT.KEY` of a response, `FORM.KEY` of a hull, which replaces the
-    /// response.
+    /// Parameters by name: `inverse_T`, `K_over_T`, `rudder_bias` and `EFFECT.KEY` of a response, or `FORM.KEY` of a
+    /// hull, which replaces the response.
     pub parameters: Vec<(String, f64)>,
 }
 
@@ -61,7 +61,7 @@ fn named(model: &ResponseModel, values: &[f64]) -> (String, Vec<(String, f64)>) 
 /// Structure and parameters of a response, drawn from the law of an estimate; SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnEstimate {
-    /// Effects of the response, joined by ` + `; `first_order` for none.
+    /// Effects of the response, joined by ` + `; `first_order` for a response without effects.
     pub structure: String,
     /// Probability of this structure.
     pub weight: f64,
@@ -69,7 +69,7 @@ pub struct DrawnEstimate {
     pub parameters: Vec<(String, f64)>,
 }
 
-/// Draws from an estimate: a structure by its probability, the parameters by their covariance. A draw is a response,
+/// Sampler of an estimate: a structure by its probability, the parameters by their covariance. A draw is a response,
 /// not a ship: it has no hull, no steering gear and no random moment.
 #[derive(Debug, Clone)]
 pub struct EstimateSampler {
@@ -78,7 +78,7 @@ pub struct EstimateSampler {
 }
 
 impl EstimateSampler {
-    /// Draws from an estimate with this seed; fails if the estimate is not valid.
+    /// Sampler of an estimate with this seed; fails if the estimate is not valid.
     pub fn new(estimate: &IdentifiedShip, seed: u64) -> Result<Self, PredictError> {
         let total: f64 = estimate.members.iter().map(|member| member.weight).sum();
         let structures = estimate.members.iter().map(|member| StructureSampler::new(member, member.weight / total, 0));

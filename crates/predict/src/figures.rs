@@ -1,5 +1,5 @@
-//! Figures of merit of a manoeuvre; the unit is in the name. `None` if the ship did not get that far. Source of the
-//! definitions: MSC.137(76) and MSC/Circ.1053 (2002).
+//! Characteristics of a manoeuvre; the unit is in the name. Source of the definitions: MSC.137(76) and MSC/Circ.1053
+//! (2002).
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -14,7 +14,7 @@ use crate::interval::PredictionInterval;
 use crate::simulated_manoeuvre::{PlanarMotion, SimulatedManoeuvre};
 use crate::standard::ZIG_ZAG_EXECUTES;
 
-/// Figures of merit by name.
+/// Characteristics by name; `None` for a characteristic that the motion does not reach.
 pub type Characteristics = IndexMap<&'static str, Option<f64>>;
 
 pub(crate) const OVERSHOOT_NAMES: [&str; ZIG_ZAG_EXECUTES - 2] =
@@ -66,7 +66,7 @@ pub fn characteristics(
     }
 }
 
-/// Time of the initial turning, and its distance in ship lengths.
+/// Time of the initial turning (s), and its distance in ship lengths if length and speed are known.
 pub(crate) fn initial_turning(
     passage: &SimulatedManoeuvre,
     turning: Option<f64>,
@@ -79,7 +79,7 @@ pub(crate) fn initial_turning(
     [("initial_turning_time_s", turning)].into_iter().chain(lengths).collect()
 }
 
-/// Characteristics of the track of a turn with the execute at `execute` s; none without a track.
+/// Characteristics of the track of a turn with the execute at `execute` s; empty for a model without speed and drift.
 pub(crate) fn circle_characteristics(passage: &SimulatedManoeuvre, execute: f64) -> Characteristics {
     let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Characteristics::default() };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
@@ -123,8 +123,9 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
     figures.insert("period_s", execute_period(executes));
 }
 
-/// Mean time between executes to the same side, s. The cycle from the second execute on includes the initial transient
-/// and counts only if there is no later cycle, as in a record ([`trial::ZigZag::period`]).
+/// Mean time between executes to the same side, s; `None` without a cycle. The cycle from the second execute on
+/// includes the initial transient and counts only if there is no later cycle, as in a record
+/// ([`trial::ZigZag::period`]).
 pub(crate) fn execute_period(executes: &[HelmOrder]) -> Option<f64> {
     let first = if executes.len() > 4 { 2 } else { 1 };
     let ends = executes.iter().skip(first + 2);
@@ -132,7 +133,8 @@ pub(crate) fn execute_period(executes: &[HelmOrder]) -> Option<f64> {
     (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64)
 }
 
-/// Times and steady rate, over the last half turn, of a turn to one side (±1).
+/// Times and steady rate of a turn to one side (±1); the rate is the mean over the last half turn of a turn beyond
+/// 270°.
 pub(crate) fn turn_characteristics(passage: &SimulatedManoeuvre, side: f64) -> Characteristics {
     let last = passage.heading.last().map_or(0.0, |heading| side * heading);
     let steady = || {
@@ -146,7 +148,7 @@ pub(crate) fn turn_characteristics(passage: &SimulatedManoeuvre, side: f64) -> C
     ])
 }
 
-/// Mean yaw rate to a side (±1) over the last tenth of the rows before `until`, deg/s.
+/// Mean yaw rate to a side (±1) over the last tenth of the rows before `until`, deg/s; `None` for fewer than ten rows.
 fn mean_rate(passage: &SimulatedManoeuvre, until: usize, side: f64) -> Option<f64> {
     let rows = &passage.yaw_rate[until - until / 10..until];
     (!rows.is_empty()).then(|| to_deg(side * rows.iter().sum::<f64>() / rows.len() as f64))

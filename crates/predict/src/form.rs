@@ -172,7 +172,7 @@ pub fn fill<'a>(
 }
 
 /// Value and source of a characteristic that a record shows: a record at full load or with a correction is preferred to
-/// a record at partial load.
+/// a record at partial load. `None` if no record shows it.
 fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);

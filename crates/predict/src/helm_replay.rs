@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 0.05;
 
 /// Result of one drawn ship.
 pub(crate) struct SampleResult {
-    /// Figures of merit; their names are the same for every draw.
+    /// Characteristics; their names are the same for every draw.
     pub figures: Characteristics,
     /// Maximum |yaw rate|, rad/s.
     pub largest_rate: f64,
@@ -56,7 +56,7 @@ impl SteeredZigZag {
             None => [rudder, heading],
         };
         let yaw_rate = match measured.straight_yaw_rate() {
-            // Shrinks a slope from few headings towards zero by its error.
+            // A slope from few headings is shrunk towards zero by its error.
             Some(rate) => {
                 let variance = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
                 if variance > 0.0 { rate.value * approach.powi(2) / variance } else { 0.0 }
@@ -89,9 +89,11 @@ impl SteeredZigZag {
     }
 }
 
-/// Characteristic of a measured zig-zag by name; angles in degrees, times in s from the first execute.
+/// Characteristic of a measured zig-zag by name; angles in degrees, times in s from the first execute. `None` if the
+/// record does not show it.
 ///
-/// The distance of the initial turning uses the recorded speed, or V times the time if `particulars` are given.
+/// The distance of the initial turning uses the recorded speed; without it, V times the time if `particulars` are
+/// given. `length` (m) stands in for an undeclared length of the ship.
 pub(crate) fn measured_characteristic(
     trial: &Trial,
     measured: &Measured,

@@ -43,7 +43,7 @@ pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
 /// Tolerance of the rudder angle of the turning circle, rad.
 pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
-/// Limit of IMO resolution MSC.137(76) on a figure of merit.
+/// Limit of IMO resolution MSC.137(76) on a characteristic.
 pub(crate) struct Limit {
     /// Name of the limit.
     pub name: &'static str,
@@ -53,7 +53,7 @@ pub(crate) struct Limit {
     pub field: &'static str,
     /// Manoeuvre.
     pub manoeuvre: FormManoeuvre,
-    /// Identifier of the figure of merit.
+    /// Name of the characteristic.
     pub figure: &'static str,
     /// Unit of the limit.
     pub unit: CriterionUnit,
@@ -135,7 +135,7 @@ impl Limit {
 }
 
 /// Criterion that limits a characteristic of a manoeuvre (such as `zig-zag 10/10 first_overshoot_deg`), and its limit
-/// for a ship with this L/V, s; `None` if there is none.
+/// for a ship with this L/V, s; `None` for a characteristic without a limit.
 pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =

@@ -4,7 +4,8 @@ use estimation::statistics::quantile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Maximum width of the 90 % interval that sets the decimals, in widths of the 50 % interval: 2.4 for a normal law.
+/// Maximum width of the 90 % interval that sets the decimals, in widths of the 50 % interval; a normal distribution has
+/// 2.4.
 const MAX_WIDTHS: f64 = 3.0;
 
 /// Median with the 50 % and 90 % intervals of a sample.
@@ -34,8 +35,9 @@ impl PredictionInterval {
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 
-    /// Number of decimals that shows two digits of the width, at most six. Of a skewed law the 50 % interval counts,
-    /// whose digits the long tail would round away.
+    /// Number of decimals that shows two digits of the width of the 90 % interval, at most six. For a skewed
+    /// distribution the width is limited to three times that of the 50 % interval, whose digits a long tail would round
+    /// away.
     pub fn decimals(&self) -> usize {
         let width = |ends: [f64; 2]| ends[1] - ends[0];
         let width = match MAX_WIDTHS * width(self.ci50) {

@@ -9,7 +9,7 @@
 //! |---|---|
 //! | drawn ships | [`mixture`], [`drawn_parameters`] |
 //! | the manoeuvres and their ends | [`standard`] |
-//! | figures of merit | [`figures`] |
+//! | characteristics of a manoeuvre | [`figures`] |
 //! | the prediction of a manoeuvre | [`prediction`] |
 //! | the replay of a recorded rudder, compared with the record | [`replay`] |
 //! | a recorded turn and its current | [`turn`] |

@@ -20,7 +20,8 @@ pub(crate) struct TurnTrack<'a> {
 }
 
 impl TurnTrack<'_> {
-    /// Position at which the heading has changed by an angle, linear between rows.
+    /// Position at which the heading has changed by an angle (rad), linear between rows; `None` if the turn ends before
+    /// this angle.
     fn at(&self, side: f64, angle: f64) -> Option<[f64; 2]> {
         let change = |row: usize| side * (self.heading[row] - self.heading[0]);
         let rows = self.heading.len().min(self.track.len());

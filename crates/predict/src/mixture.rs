@@ -23,7 +23,7 @@ pub enum UncertaintySource {
     Parameters,
     /// Structures that the records do not distinguish.
     Structure,
-    /// Random yaw moment, and the error of a hull in the first seconds.
+    /// Random yaw moment, and the error of the initial yaw rate of a hull.
     ProcessNoise,
     /// Rudder rate.
     SteeringGear,
@@ -65,7 +65,7 @@ pub(crate) struct StructureSampler {
     root: DMatrix<f64>,
     /// Indices of dead times among the parameters.
     dead_times: Vec<usize>,
-    /// Hull that replaces the structure.
+    /// Hull that replaces the response of the structure; `None` for the response itself.
     pub hull: Option<HullSampler>,
     /// Index of the file.
     pub file: usize,
@@ -83,7 +83,7 @@ pub struct ShipMixture {
     is_independent: bool,
     /// `true` if the hulls nevertheless follow the hulls of the other mixture, each at another loading.
     shares_trial_errors: bool,
-    /// Wind on the hulls; direction relative to the approach heading.
+    /// Wind on the hulls, from a direction relative to the approach heading; `None` without wind.
     pub(crate) wind: Option<Wind>,
 }
 
@@ -92,9 +92,9 @@ pub struct ShipMixture {
 pub struct DrawnShip {
     /// Yaw response.
     pub response: Response,
-    /// Hull, if one was fitted; it replaces the response.
+    /// Hull, which replaces the response; `None` if none was fitted.
     pub hull: Option<ScaledHull>,
-    /// Coefficients of the hull.
+    /// Coefficients of the hull; empty without a hull.
     pub coefficients: Vec<f64>,
     /// Steering gear.
     pub gear: SteeringGear,
@@ -288,7 +288,7 @@ impl StructureSampler {
         Ok(self)
     }
 
-    /// Random yaw moment of the form of the hull, or of the structure.
+    /// Random yaw moment: the model error of the hull, or else the moment of the noise law of the ship.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
         let Some(hull) = &self.hull else { return ship.noise.moment };
         let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = hull.stored.model_error_moment;

@@ -1,4 +1,4 @@
-//! Prediction of a manoeuvre: figures of merit with intervals and their sources, and bands of the curves. Source of the
+//! Prediction of a manoeuvre: characteristics with intervals and their sources, and bands of the curves. Source of the
 //! method: propagation of distributions by Monte Carlo, JCGM 101:2008 (Supplement 1 to the GUM).
 
 use document::identified_ship::ValidityRange;
@@ -25,8 +25,8 @@ const RATIO: usize = 4;
 /// Minimum share of the drawn ships that complete a manoeuvre.
 const MIN_COMPLETED_SHARE: f64 = 0.5;
 
-/// Tolerance of the range of the records: a rudder overshoots its order, and the maximum rate comes from a single
-/// record.
+/// Factor on the range of the records beyond which a manoeuvre is extrapolated: a rudder overshoots its order, and the
+/// maximum rate comes from a single record.
 pub const RANGE_FACTOR: f64 = 1.05;
 
 /// Predicted figure of merit.
@@ -49,7 +49,7 @@ pub struct PredictedFigure {
 }
 
 impl PredictedFigure {
-    /// Share of the drawn ships within a limit; a ship without the figure of merit counts as outside.
+    /// Share of the drawn ships within a limit; a ship without the characteristic counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
         let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
         kept as f64 / self.draws.len() as f64
@@ -238,7 +238,7 @@ pub(crate) fn parallel_draws<T: Send>(draws: usize, draw: impl Fn(u64) -> T + Sy
     (0..draws as u64).into_par_iter().map(draw).collect()
 }
 
-/// Figures of merit of the samples, with the shares of single sources.
+/// Characteristics of the samples, with the shares of single sources.
 fn predicted(
     draws: &[Option<Characteristics>],
     extrapolated: bool,
@@ -266,7 +266,7 @@ fn predicted(
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
-/// Quantiles row by row, up to the row that a tenth of the drawn ships reach.
+/// Quantiles row by row, up to the last row that nine tenths of the drawn ships reach.
 fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> BandedCurve {
     let mut bands = BandedCurve::default();
     let mut values = Vec::with_capacity(draws.len());

@@ -113,6 +113,8 @@ impl ShipMixture {
     /// follow the heading. A hull is in the mean wind of the record, if it was measured. `current` is the current
     /// removed from the positions of the record ([`without_current`](turn::without_current)). `None` if the record has
     /// too few headings at its beginning.
+    ///
+    /// Fails if less than half of the drawn ships complete the replay.
     pub fn replay(
         &self,
         trial: &Trial,
@@ -198,8 +200,8 @@ impl ShipMixture {
         Ok(compared(&drawn, |name| self.measured_characteristic(trial, measured, name)))
     }
 
-    /// Characteristic of a measured zig-zag. For a model without speed the distance of the initial turning is V times
-    /// the time, in the record as in the prediction.
+    /// Characteristic of a measured zig-zag; `None` if the record does not show it. For a model without speed the
+    /// distance of the initial turning is V times the time if the record has no distance.
     pub(crate) fn measured_characteristic(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
         let particulars = self.particulars();
         let has_way = !self.first().hulls.is_empty();
@@ -261,10 +263,12 @@ fn turns(
     let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
     let turn = HeldTurn::from_trial(trial).zip(turn::resampled_record(trial, timescale, length));
     let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
-    let measured = turn.figures(&record);
+    let measured = turn.characteristics_within_record(&record);
     let drawn_figures = |(number, passage): (usize, &SimulatedManoeuvre)| match current {
-        None => turn.figures(passage),
-        Some(current) => turn.figures(&turn::with_current_error(passage, &current, number as u64)),
+        None => turn.characteristics_within_record(passage),
+        Some(current) => {
+            turn.characteristics_within_record(&turn::with_current_error(passage, &current, number as u64))
+        }
     };
     let drawn: Vec<Characteristics> = made.iter().enumerate().map(drawn_figures).collect();
     let figures = compared(&drawn, |name| measured.get(name).copied().flatten().map(Quantity::without_uncertainty));

@@ -1,11 +1,12 @@
-//! Square root of a covariance, by its eigenvalues.
+//! Square root of a covariance, by the eigenvalues of its correlation matrix.
 
 use nalgebra::DMatrix;
 
 use crate::error::PredictError;
 
-/// Square root U √Λ of a covariance with eigenvalues Λ; small negative eigenvalues count as zero. Fails with
-/// [`PredictError::Covariance`] for a matrix that is not a covariance.
+/// Square root S U √Λ of a covariance with standard deviations S, whose correlation matrix has eigenvectors U and
+/// eigenvalues Λ; small negative eigenvalues count as zero. Fails with [`PredictError::Covariance`] for a matrix that
+/// is not a covariance.
 pub(crate) fn covariance_root(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     let count = covariance.len();
     if count == 0 {

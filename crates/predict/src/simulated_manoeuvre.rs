@@ -65,7 +65,7 @@ impl PlanarMotion {
     }
 }
 
-/// Time between rows, s.
+/// Time between rows, s, for a ship with this timescale, s.
 pub(crate) fn row_interval(timescale: f64) -> f64 {
     (timescale / ROWS_PER_TIMESCALE).clamp(2e-3, 900.0)
 }
@@ -141,7 +141,7 @@ impl SimulatedManoeuvre {
         }
     }
 
-    /// First row in which the ship exceeds the speed `fastest`, m/s.
+    /// First row in which the ship exceeds the speed `fastest`, m/s; `None` if it never does.
     fn runs_away(&self, fastest: f64) -> Option<usize> {
         self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
@@ -192,7 +192,8 @@ impl SimulatedManoeuvre {
         row as f64 * self.period
     }
 
-    /// First time, s, at which the heading has changed by `angle` (rad) to the side `side` (±1); straight between rows.
+    /// First time, s, at which the heading has changed by `angle` (rad) to the side `side` (±1), linear between rows;
+    /// `None` if it never does.
     pub fn time_of_heading_change(&self, angle: f64, side: f64) -> Option<f64> {
         let row = self.heading.iter().position(|heading| side * heading >= angle)?;
         let Some(before) = row.checked_sub(1) else { return Some(0.0) };
@@ -200,8 +201,8 @@ impl SimulatedManoeuvre {
         Some(self.time(before) + self.period * (angle - low) / (high - low))
     }
 
-    /// Maximum heading to the side `side` (±1), rad, between two times, s: if the yaw rate changes sign between rows,
-    /// the peak of the parabola.
+    /// First maximum of the heading to the side `side` (±1), rad, between two times, s: the peak of a parabola between
+    /// the rows at which the yaw rate changes sign. `None` if it does not change sign.
     pub fn peak(&self, side: f64, from: f64, until: f64) -> Option<f64> {
         let first = (from / self.period).floor() as usize;
         let last = ((until / self.period).ceil() as usize).min(self.heading.len().checked_sub(1)?);

@@ -1,4 +1,4 @@
-//! Predicted manoeuvres: the manoeuvres of the IMO criteria, and the end of a manoeuvre that does not specify it.
+//! Predicted manoeuvres: the manoeuvres of the IMO criteria, and the end of every predicted manoeuvre.
 
 use ship::angle::from_deg;
 use simulate::Manoeuvre;
@@ -16,13 +16,15 @@ const PULL_OUT: f64 = 40.0;
 /// Duration after the last order of a Williamson turn, in timescales of the ship.
 const AFTER_WILLIAMSON: f64 = 20.0;
 
-/// Manoeuvres of the IMO criteria, to starboard.
+/// Manoeuvres of the criteria of IMO MSC.137(76), first to starboard: zig-zags 10/10 and 20/20, and a turning circle at
+/// 35°.
 pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
     let zig_zag = |angle_deg| Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(angle_deg));
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// Requested manoeuvre with its end added, scaled by the timescale (s) of a ship; `None` for a spiral, a steady curve.
+/// Requested manoeuvre with the end of a prediction, scaled by the timescale (s) of a ship; `None` for a spiral, which
+/// is predicted as a steady curve.
 pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {

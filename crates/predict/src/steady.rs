@@ -81,7 +81,8 @@ impl SteadyCurve {
         })
     }
 
-    /// Yaw rate at a rudder (rad) on the outer branch of that side, rad/s.
+    /// Yaw rate at a rudder (rad) on the outer branch of that side, rad/s; `None` if the curve does not reach this
+    /// rudder.
     pub fn outer_branch(&self, rudder: f64) -> Option<f64> {
         let mut rates = self.rates_at(rudder);
         if rudder < 0.0 { rates.next() } else { rates.next_back() }

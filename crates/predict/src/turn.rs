@@ -36,8 +36,8 @@ pub fn estimated_current(trial: &Trial) -> Option<Current> {
     simulate::motion::estimate_current(&at_rows(trial.time()), &at_rows(trial.heading()), &track)
 }
 
-/// Record with the current removed from the positions, and that current: the given one, or else the current that the
-/// record determines.
+/// Record with the current removed from the positions, and that current: the given current, or else the current that
+/// the record determines. `None` without a current or without positions.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
     match given.or_else(|| estimated_current(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
         Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
@@ -114,12 +114,12 @@ impl HeldTurn {
     }
 
     /// Characteristics of a turn up to the end of the recorded turn.
-    pub(crate) fn figures(&self, passage: &SimulatedManoeuvre) -> Characteristics {
-        self.whole_figures(&passage.until(self.until - self.start))
+    pub(crate) fn characteristics_within_record(&self, passage: &SimulatedManoeuvre) -> Characteristics {
+        self.characteristics_to_end(&passage.until(self.until - self.start))
     }
 
     /// Characteristics of a turn up to its end; the clock starts with the record.
-    pub(crate) fn whole_figures(&self, passage: &SimulatedManoeuvre) -> Characteristics {
+    pub(crate) fn characteristics_to_end(&self, passage: &SimulatedManoeuvre) -> Characteristics {
         let first = self.first_row(passage);
         let begin = passage.interpolated(&passage.heading, self.approach_duration());
         let heading = passage.heading.iter().skip(first).map(|heading| heading - begin).collect();
@@ -145,7 +145,7 @@ impl HeldTurn {
         Some((first..track.len()).take_while(is_shown).map(place).collect())
     }
 
-    /// Rudder of the record up to the end of the turn, and held from there.
+    /// Rudder of the record up to the end of the turn, and held from there; `None` if the signal begins after that end.
     pub(crate) fn extended_rudder(&self, signal: &Polyline) -> Option<Polyline> {
         let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
@@ -160,7 +160,7 @@ impl HeldTurn {
 pub struct MeasuredCircle {
     /// Held rudder.
     pub turn: HeldTurn,
-    /// Figures of merit.
+    /// Characteristics of the turn.
     pub figures: Characteristics,
     /// Track from the execute on, turned so that the heading at the execute points north: north and east in ship
     /// lengths; `None` without positions or length.
@@ -178,7 +178,7 @@ impl MeasuredCircle {
         let ship = trial.particulars();
         let timescale = ship.map_or_else(|| trial.duration() / DEFAULT_TIMESCALES, |ship| ship.length / ship.speed);
         let passage = resampled_record(&trial, timescale, ship.map(|ship| ship.length))?;
-        let figures = turn.figures(&passage);
+        let figures = turn.characteristics_within_record(&passage);
         figures.get("time_to_90_s").copied().flatten()?;
         let track = turn.track(&passage);
         Some(Self { turn, figures, track })

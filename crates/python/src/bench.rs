@@ -10,8 +10,8 @@ use crate::options::parse_request;
 use crate::python_method::{PyIdentifier, PythonMethods};
 use crate::run::{Watch, watched};
 
-/// Document of the benchmark, and messages on skipped records; `options` are options of the command line. `progress` is
-/// called with the number of finished fits and the total number of fits.
+/// Document of the benchmark, and messages on skipped records followed by warnings. `options` are options of the
+/// command line; `progress` is called with the number of finished fits and the total number of fits.
 #[pyfunction]
 pub fn bench(
     py: Python<'_>,

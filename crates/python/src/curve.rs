@@ -8,7 +8,7 @@ use ship::angle::to_deg;
 /// Time (s), heading (deg) and residual (deg) of a replay.
 pub type ReplayArrays<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// Arrays of a replay, in degrees.
+/// Arrays of a replay, with angles in degrees.
 pub fn curve<'py>(py: Python<'py>, replay: &Replay) -> ReplayArrays<'py> {
     let degrees = |angles: &[f64]| PyArray1::from_vec(py, angles.iter().map(|&angle| to_deg(angle)).collect());
     (PyArray1::from_slice(py, &replay.time), degrees(&replay.heading), degrees(&replay.residual))

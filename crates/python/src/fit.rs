@@ -20,23 +20,27 @@ use crate::wait::patiently;
 /// Result of a fit, with the records and estimates for its figures.
 #[pyclass(frozen, name = "Fit", module = "kempf._kempf")]
 pub struct PyFit {
+    /// Document of the fit, JSON.
     #[pyo3(get)]
     text: String,
+    /// Warnings of the fit, without those of reading.
     #[pyo3(get)]
     warnings: Vec<String>,
     /// Fitted records, then validation records, at one scale.
     trials: Vec<Trial>,
+    /// Methods with their estimates; `None` for a method that gives no estimate.
     answers: Vec<(String, Option<Estimate>)>,
 }
 
 #[pymethods]
 impl PyFit {
-    /// Record number `place` as fitted, at the scale of the first record; `None` if there is none.
+    /// Record number `place`, from 0, as fitted, at the scale of the first record; `None` beyond the last record.
     fn record(&self, place: usize) -> Option<PyRecord> {
         self.trials.get(place).cloned().map(PyRecord::plain)
     }
 
-    /// Replay of a record by the estimate of a method; `None` if the method gives no estimate.
+    /// Replay of a record by the estimate of a method; `None` without this record or this method, if the method gives
+    /// no estimate, or if the replay is not finite.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))

@@ -11,7 +11,7 @@ struct KeywordOptions<R: Args> {
     request: R,
 }
 
-/// Request parsed from options, each written as `--name=value`.
+/// Request parsed from options, each written as `--name=value`, and from arguments after `--`.
 ///
 /// Fails with the usage error of the command line.
 pub fn parse_request<R: Args>(options: Vec<String>) -> Result<R, Failure> {

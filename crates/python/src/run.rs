@@ -22,11 +22,15 @@ use crate::wait::Underway;
 /// Observer of background work: progress, messages and requests to stop.
 #[derive(Default)]
 pub struct Watch {
+    /// `true` after a request to stop.
     is_asked: AtomicBool,
+    /// Maximum number of steps.
     most: AtomicU64,
+    /// Number of finished steps.
     done: AtomicU64,
     /// Notes and warnings.
     messages: Mutex<[Vec<String>; 2]>,
+    /// Threads of the work; `None` for the global pool.
     threads: Option<ThreadPool>,
 }
 
@@ -59,7 +63,7 @@ impl Observer for Watch {
         self.messages()[1].push(line.to_owned());
     }
 
-    fn is_asked_to_stop(&self) -> bool {
+    fn should_stop(&self) -> bool {
         self.is_asked.load(Ordering::Relaxed)
     }
 
@@ -97,8 +101,8 @@ fn study(
     publish::document(&stored, &summary, &folder)
 }
 
-/// Document, notes and warnings of a scenario that is run. `progress` is called with the number of finished trials and
-/// the maximum number of trials.
+/// Document, notes and warnings of a scenario that is run into the folder `out`; `None` for the default folder.
+/// `progress` is called with the number of finished trials and the maximum number of trials.
 #[pyfunction]
 #[pyo3(signature = (scene, out, threads, seed, restart, progress))]
 pub fn run(

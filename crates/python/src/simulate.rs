@@ -12,7 +12,8 @@ use crate::record::{PyRecord, record_from_table};
 use crate::scene::ScenarioInput;
 use crate::wait::patiently;
 
-/// Selected trials, each with its truth as JSON. Records pass through the file format, as on the command line.
+/// Selected trials, each with its truth as JSON; `None` for `cell` or `replicate` selects all. Records pass through the
+/// file format, as on the command line.
 #[pyfunction]
 pub fn simulate(
     py: Python<'_>,
@@ -32,7 +33,7 @@ pub fn simulate(
         let trials = tasks(&scenario, &asked)?.into_par_iter().map(|task| {
             simulate_record_files(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect()
         });
-        // The first failure in the order of the trials.
+        // Collected in two steps, so that the failure is the first one in the order of the trials.
         let trials: Vec<Result<Vec<(PyRecord, String)>, Failure>> = trials.collect();
         Ok(trials.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
     })

@@ -17,8 +17,10 @@ use crate::wait::patiently;
 /// Result of a trace, with the records and replays for its figures.
 #[pyclass(frozen, name = "Trace", module = "kempf._kempf")]
 pub struct PyTrace {
+    /// Document of the trace, JSON.
     #[pyo3(get)]
     text: String,
+    /// Warnings of the trace, without those of reading.
     #[pyo3(get)]
     warnings: Vec<String>,
     /// Fitted records, then validation records, at one scale, each with its replays.
@@ -27,7 +29,7 @@ pub struct PyTrace {
 
 #[pymethods]
 impl PyTrace {
-    /// Record number `place` as fitted, at the scale of the first record; `None` if there is none.
+    /// Record number `place`, from 0, as fitted, at the scale of the first record; `None` beyond the last record.
     fn record(&self, place: usize) -> Option<PyRecord> {
         self.records.get(place).map(|record| PyRecord::plain(record.trial.clone()))
     }

@@ -29,7 +29,8 @@ impl<T: Send + 'static> Underway<T> {
         Ok(Self(receive))
     }
 
-    /// Result after a wait of one interval, without the interpreter lock; `None` while the work runs.
+    /// Result of the work, if it ends within one polling interval; `None` while the work runs. The interpreter lock is
+    /// released meanwhile.
     pub fn wait(&mut self, py: Python<'_>) -> Option<PyResult<T>> {
         let receive = &mut self.0;
         match py.detach(move || receive.recv_timeout(LOOK)) {

@@ -19,14 +19,18 @@ const ZERO_SLOT: f64 = 0.21;
 const ZERO_AT: f64 = 0.08;
 /// Position of the break, as a share of the length of the axis.
 const BREAK_AT: f64 = 0.155;
-/// Maximum magnitude on a linear axis.
+/// Maximum magnitude of the values that determine the ends of an axis; its reciprocal is the minimum on a logarithmic
+/// axis.
 const MAX_MAGNITUDE: f64 = 1e100;
-/// Maximum distance beyond the ends of an axis at which values are drawn, in its lengths; integers would overflow.
+/// Maximum distance beyond the ends of an axis at which values are drawn, in lengths of the axis. Farther out the
+/// integer coordinates would overflow.
 const FAR: f64 = 20.0;
 /// Maximum number of intervals between the ticks of an axis.
 pub(crate) const MAX_TICK_INTERVALS: usize = 10;
 /// Margin for labels right of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
+/// Minimum distance of names under an axis, in font sizes; that of numbers is 1.
+const NAMES_GAP: f64 = 0.25;
 /// Maximum number of decades of a logarithmic axis with lines between the decades.
 const MAX_TICKED_DECADES: i32 = 6;
 
@@ -34,6 +38,7 @@ const MAX_TICKED_DECADES: i32 = 6;
 enum AxisScale {
     Linear(TickRule),
     Log {
+        /// `true` if zero has a separate place before a break.
         zero: bool,
     },
     /// One unit per name, the first at 0.
@@ -48,7 +53,7 @@ pub(crate) struct Axis {
     /// Value at the right or upper end, below `lo` if names run downwards.
     hi: f64,
     scale: AxisScale,
-    /// Maximum value with a tick: the range beyond is free for text; infinite if there is none.
+    /// Maximum value with a tick: the range beyond is free for text. Infinite without such a range.
     pub last: f64,
     /// Tick values with their labels.
     pub ticks: Vec<(f64, String)>,
@@ -81,7 +86,7 @@ impl Axis {
         Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), tick_rule)
     }
 
-    /// Logarithmic axis over the positive `values`; a zero among them gets a separate place before a break.
+    /// Logarithmic axis over the positive ones of `values`; a zero among `values` gets a separate place before a break.
     pub(crate) fn log_covering(values: &[f64]) -> Self {
         let positive = range(values.iter().copied().filter(|v| *v > 0.0));
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
@@ -90,7 +95,8 @@ impl Axis {
         Self::new(lo / widen, hi * widen, AxisScale::Log { zero: values.contains(&0.0) })
     }
 
-    /// Axis of row names, one unit each, the first at the top; it ends at the edges of the rows.
+    /// Axis of row names, one unit each, the first at the top. `edge` is the distance of the ends from the first and
+    /// the last name, in rows.
     pub(crate) fn rows(names: &[String], edge: f64) -> Self {
         Self::names(names, [names.len().max(1) as f64 - 1.0 + edge, -edge])
     }
@@ -113,12 +119,13 @@ impl Axis {
         if share > 0.0 { Self { hi, last: last.min(self.last), ..self } } else { self }
     }
 
-    /// The axis from `lo` to `hi`, which are in order.
+    /// The axis with other ends, `lo` below `hi`.
     pub(crate) fn between(self, lo: f64, hi: f64) -> Self {
         Self { lo, hi, ..self }
     }
 
-    /// Scale that gives a value from its place: kind, ends and the fraction where it begins, or the names.
+    /// Scale as text, by which a browser converts a place to a value: kind and ends, then the share of a logarithmic
+    /// axis that is kept for zero, or the names.
     pub(crate) fn scale_text(&self) -> String {
         let (lo, hi) = (self.lo.min(self.hi), self.lo.max(self.hi));
         match &self.scale {
@@ -162,7 +169,7 @@ impl Axis {
         self.ticks.iter().map(|(_, label)| label.as_str())
     }
 
-    /// Label of a tick.
+    /// Label of the tick at `value`; empty without such a tick.
     pub(crate) fn label(&self, value: f64) -> String {
         self.ticks.iter().find(|(tick, _)| *tick == value).map_or_else(String::new, |(_, label)| label.clone())
     }
@@ -191,7 +198,7 @@ impl Axis {
     /// The axis with as many ticks as there is room for labels, `width` and `font` in points. Names are wrapped if
     /// their words fit.
     pub(crate) fn with_fitting_ticks(self, width: f64, font: f64) -> Self {
-        let pitch = width / self.ticks.len().max(1) as f64 - 0.4 * font;
+        let pitch = width / self.ticks.len().max(1) as f64 - NAMES_GAP * font;
         let has_room = |label: &str| label.split(' ').all(|word| text_width(word, font, false) <= pitch);
         if self.is_names() {
             let is_wrapped = !self.fits(width, font) && self.labels().all(has_room);
@@ -201,7 +208,7 @@ impl Axis {
             (2..=MAX_TICK_INTERVALS).rev().map(|count| self.clone().ticked(count)).find(|axis| axis.fits(width, font));
         let mut fewest = fitting.unwrap_or_else(|| self.ticked(1));
         if !fewest.fits(width, font) && fewest.ticks.len() > 2 {
-            // The ends alone determine the scale.
+            // The first and the last tick suffice to read the scale.
             fewest.ticks.drain(1..fewest.ticks.len() - 1);
         }
         fewest
@@ -211,7 +218,8 @@ impl Axis {
     pub(crate) fn fits(&self, width: f64, font: f64) -> bool {
         let place = |value: f64| f64::from(self.map(&value, (0, 1_000_000))) * 1e-6 * width;
         let half = |label: &str| text_width(label, font, false) / 2.0;
-        let clear = |pair: &[(f64, String)]| half(&pair[0].1) + half(&pair[1].1) + font;
+        let gap = if self.is_names() { NAMES_GAP } else { 1.0 } * font;
+        let clear = |pair: &[(f64, String)]| half(&pair[0].1) + half(&pair[1].1) + gap;
         let is_clear = |pair: &[(f64, String)]| (place(pair[1].0) - place(pair[0].0)).abs() >= clear(pair);
         let end = self.ticks.last().map_or(0.0, |(value, label)| place(*value) + half(label));
         self.ticks.windows(2).all(is_clear) && end <= width + MARGIN * font
@@ -235,13 +243,13 @@ impl Axis {
         let hi = self.hi.min(self.last);
         let (first, last) = ((self.lo.log10() - 1e-9).ceil() as i32, (hi.log10() + 1e-9).floor() as i32);
         let decades = (last - first + 1).max(0) as usize;
-        let is_plain = self.lo >= 1e-3 && self.hi <= 1e4 && decades <= 4;
+        let is_plain = self.lo >= 1e-3 && hi <= 1e6 && decades <= 6;
         let label = |exponent: i32, digit: i32| match (is_plain, digit) {
             (true, _) => number::fixed(f64::from(digit) * 10f64.powi(exponent), (-exponent).max(0) as usize),
             (false, 1) => number::power_of_ten(exponent),
             (false, _) => format!("{digit}×{}", number::power_of_ten(exponent)),
         };
-        let is_inside = |value: f64| value >= self.lo * (1.0 - 1e-9) && value <= self.hi * (1.0 + 1e-9);
+        let is_inside = |value: f64| value >= self.lo * (1.0 - 1e-9) && value <= hi * (1.0 + 1e-9);
         let ticks = |(every, leading): (i32, &[i32])| -> Vec<(f64, String)> {
             let shown = (first - 1..=last).filter(|exponent| exponent.rem_euclid(every) == 0);
             let digits = shown.flat_map(|exponent| leading.iter().map(move |digit| (exponent, *digit)));
@@ -265,7 +273,7 @@ impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
-    /// Place of a value; a value without a place is far beyond the lower end.
+    /// Place of a value; one without a place on a logarithmic scale is far beyond the lower end.
     fn map(&self, value: &f64, limit: PixelRange) -> i32 {
         let (start, end) = limit;
         let AxisScale::Log { zero } = self.scale else {
@@ -282,7 +290,7 @@ impl Ranged for Axis {
         LogCoord::from((self.lo..self.hi).log_scale()).map(&value, (part(if zero { ZERO_SLOT } else { 0.0 }), end))
     }
 
-    /// Key points: the ticks; for light lines on a logarithmic axis of few decades, the other digits between them.
+    /// Key points: the ticks; for light lines on a logarithmic axis of few decades, 1 to 9 times each power of ten.
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         if !hint.weight().allow_light_points() {
             return self.ticks.iter().map(|(value, _)| *value).collect();
@@ -301,7 +309,8 @@ impl Ranged for Axis {
     }
 }
 
-/// Labels of equidistant ticks, all with the decimals that their distance requires.
+/// Labels of equidistant ticks, all with the decimals that their distance requires; very small or large values have a
+/// power of ten.
 fn linear_labels(ticks: &[f64]) -> Vec<String> {
     let step = if let [first, second, ..] = ticks { second - first } else { 0.0 };
     let largest = ticks.iter().fold(0.0_f64, |most, tick| most.max(tick.abs()));
@@ -320,7 +329,7 @@ fn linear_labels(ticks: &[f64]) -> Vec<String> {
     ticks.iter().map(label).collect()
 }
 
-/// Minimum and maximum finite value; `None` if there is none.
+/// Minimum and maximum of the finite values; `None` if no value is finite.
 pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.into_iter().filter(|v| v.is_finite()).map(|v| (v, v));
     finite.reduce(|(lo, hi), (v, _)| (lo.min(v), hi.max(v)))
@@ -410,6 +419,9 @@ mod tests {
         assert_eq!(labels(&axis, 8), ["10⁻⁶", "10⁻⁵", "10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰"]);
         assert_eq!(labels(&axis, 3), ["10⁻⁶", "10⁻³", "10⁰"]);
         assert_eq!(labels(&Axis::log_covering(&[0.05, 0.5, 3.0]), 4), ["0.1", "1"]);
+        assert_eq!(labels(&Axis::log_covering(&[0.5, 1.5e5]), 8), ["1", "10", "100", "1000", "10000", "100000"]);
+        // The room for numbers has no ticks.
+        assert_eq!(labels(&Axis::log_covering(&[1.0, 15.0]).with_room(0.5), 8), ["1", "2", "5", "10"]);
     }
 
     #[test]

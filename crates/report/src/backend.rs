@@ -19,8 +19,9 @@ use plotters_backend::{
 use crate::changes::StyleChanges;
 use crate::fonts::{FAMILY_WITH_FALLBACK, LINE_SPACING, text_width};
 use crate::markup::{is_markup, runs};
-use crate::palette::{Dash, PAPER};
+use crate::palette::PAPER;
 use crate::printable::is_printable;
+pub(crate) use crate::svg_group::{Bounds, SvgGroup};
 
 /// Units per point on the page: 2.4 per dot at 600 dpi, so rounding to whole units is invisible.
 pub(crate) const UNITS_PER_POINT: f64 = 20.0;
@@ -40,29 +41,6 @@ type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
 /// Length in units.
 pub(crate) fn units(points: f64) -> i32 {
     (points * UNITS_PER_POINT).round() as i32
-}
-
-/// A rectangle in units: left, top, right and bottom.
-pub(crate) type Bounds = [i32; 4];
-
-/// Attributes shared by elements that are drawn together.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct SvgGroup {
-    /// Series name in the key of the figure, by which a page in a browser finds the elements.
-    pub series: Option<String>,
-    /// `true` if the elements are intervals of the values of that series, not values.
-    pub is_interval: bool,
-    /// Dash pattern of their lines in line widths, and the line width in points.
-    pub dash: Option<(Dash, f64)>,
-    /// Clip rectangle of the elements.
-    pub clip: Option<Bounds>,
-}
-
-impl SvgGroup {
-    /// Group of a series, with its name if it has one in the key.
-    pub(crate) fn named(series: Option<&str>) -> Self {
-        Self { series: series.map(str::to_owned), ..Self::default() }
-    }
 }
 
 /// Group that is being filled.
@@ -175,6 +153,13 @@ impl SvgDocument {
         if let Some((dash, width)) = group.dash.filter(|(dash, _)| !dash.is_empty()) {
             let parts: Vec<String> = dash.iter().map(|part| units(part * width).to_string()).collect();
             let _ = write!(attributes, " stroke-dasharray=\"{}\"", parts.join(" "));
+        }
+        if let Some(width) = group.halo {
+            let (paper, width) = (self.colour(PAPER.to_backend_color()), units(2.0 * width));
+            let _ = write!(
+                attributes,
+                " stroke=\"{paper}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\""
+            );
         }
         // Clipping costs the rasteriser a layer, so only groups that reach beyond the rectangle are clipped.
         if let Some([left, top, right, bottom]) = group.clip.filter(|_| is_beyond) {
@@ -431,6 +416,13 @@ mod tests {
             beyond.contains("<clipPath id=\"clip-0-0-100-50\"><rect x=\"0\" y=\"0\" width=\"100\" height=\"50\"/>")
         );
         assert!(beyond.contains(" clip-path=\"url(#clip-0-0-100-50)\">"), "{beyond}");
+        let haloed = drawn(|area, svg| {
+            svg.begin(SvgGroup { halo: Some(0.5), ..SvgGroup::default() });
+            area.draw(&line(&[(0, 0), (1, 1)]))?;
+            svg.end();
+            Ok(())
+        });
+        assert!(haloed.contains("<g stroke=\"#FFFFFF\" stroke-width=\"20\" stroke-linejoin=\"round\" paint-order"));
         // A dashed line that fills an area is solid.
         let band: Vec<BackendCoord> = (0..4000).map(|i| (i / 4, i % 2 * 500)).collect();
         assert!(grouped(&band).contains("stroke-dasharray=\"none\""));

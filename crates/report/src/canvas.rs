@@ -14,7 +14,7 @@ use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 /// Place on the page, points from the upper left corner.
 pub(crate) type PagePoint = (f64, f64);
 
-/// Element of plotters at a place of any coordinates.
+/// Element of plotters at a place in the coordinates `C`.
 pub(crate) type Element<C> = DynElement<'static, Svg, C>;
 
 /// Rectangle on the page: left, top, width and height, points.
@@ -68,11 +68,12 @@ impl Stroke {
     }
 }
 
-/// Text with its style; lines are separated by line breaks. Its place is the end given by its anchor, at the middle of
-/// its height.
+/// Text with its style; lines are separated by line breaks. Its place is its left end, middle or right end, as the
+/// anchor states, at half its height.
 #[derive(Clone)]
 pub(crate) struct TextLine {
     pub text: String,
+    /// Font size, points.
     pub size: f64,
     pub colour: RGBColor,
     pub is_bold: bool,
@@ -90,7 +91,7 @@ impl TextLine {
         text_width(&self.text, self.size, self.is_bold)
     }
 
-    /// Left and right end of an unturned text at `x`.
+    /// Left and right end of an unturned text at `x`, points.
     pub(crate) fn ends(&self, x: f64) -> [f64; 2] {
         let left = match self.anchor {
             HPos::Left => x,
@@ -108,6 +109,9 @@ impl TextLine {
         font.color(&self.colour).pos(Pos::new(self.anchor, VPos::Center))
     }
 }
+
+/// Width of the edge of a text on either side of its letters, in font sizes.
+const HALO: f64 = 0.12;
 
 /// Page to draw on, with coordinates in points.
 #[derive(Clone)]
@@ -144,12 +148,12 @@ impl Canvas {
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
-    /// Text on a white background, for places with lines underneath.
-    pub(crate) fn text_on_ground(&self, (x, y): PagePoint, text: &TextLine) -> PlotResult {
-        let [left, right] = text.ends(x);
-        let (left, right, half) = (left - 0.12 * text.size, right + 0.12 * text.size, 0.5 * text.size);
-        self.fill(&[(left, y - half), (right, y - half), (right, y + half), (left, y + half)], PAPER, 0.85)?;
-        self.text((x, y), text)
+    /// Text with a white edge about its letters, for places with lines underneath.
+    pub(crate) fn text_with_halo(&self, place: PagePoint, text: &TextLine) -> PlotResult {
+        self.svg.begin(SvgGroup { halo: Some(HALO * text.size), ..SvgGroup::default() });
+        self.text(place, text)?;
+        self.svg.end();
+        Ok(())
     }
 
     /// Draws elements at places in backend units, such as a marker or a ship outline.
@@ -170,11 +174,13 @@ pub(crate) fn page_units((x, y): PagePoint) -> (i32, i32) {
     (units(x), units(y))
 }
 
+/// Points in the units of the SVG backend; `None` if a coordinate is not finite.
 fn placed(points: &[PagePoint]) -> Option<Vec<(i32, i32)>> {
     let is_finite = points.iter().all(|(x, y)| x.is_finite() && y.is_finite());
     is_finite.then(|| points.iter().copied().map(page_units).collect())
 }
 
+/// Corners of a star, to the right and down, in radii of a marker.
 #[rustfmt::skip]
 const STAR: [(f64, f64); 10] = [
     (0.0, -1.25), (0.32, -0.44), (1.19, -0.39), (0.52, 0.17), (0.73, 1.01),

@@ -1,5 +1,5 @@
-//! One pair of axes on the page: a chart of plotters, and the elements that all figures draw in it. Everything is
-//! clipped at the frame; undefined values are omitted.
+//! One pair of axes on the page: a chart of plotters, and the elements that all figures draw in it. Lines and areas are
+//! clipped at the frame; markers and dots are drawn whole if they are inside it. Undefined values are omitted.
 
 use plotters::chart::ChartContext;
 use plotters::coord::cartesian::Cartesian2d;
@@ -18,8 +18,8 @@ use crate::theme::Theme;
 /// Chart of plotters.
 pub(crate) type SvgChart = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
 
-/// Distance beyond the frame, units, from which plotters moves elements to the edge. Everything beyond the frame is
-/// clipped, so lines leave the frame at the correct places.
+/// Distance beyond the frame, units, from which plotters moves points to the edge. It is large, so that the lines to
+/// these points leave the frame at the correct places; the part beyond the frame is clipped.
 const BEYOND: i32 = 1_000_000;
 
 /// Framed pair of axes on the page.
@@ -35,6 +35,7 @@ pub(crate) struct Chart {
 pub(crate) struct Bar {
     /// Height of the interval, a value of the vertical axis.
     pub y: f64,
+    /// Ends of the interval, values of the horizontal axis.
     pub ends: [f64; 2],
     /// `true` if the interval has caps.
     pub is_capped: bool,
@@ -42,7 +43,7 @@ pub(crate) struct Bar {
 }
 
 impl Chart {
-    /// Chart on the page.
+    /// Chart of plotters on a page, with its horizontal and its vertical axis.
     pub(crate) fn new(chart: &SvgChart, canvas: Canvas, [x, y]: [Axis; 2]) -> Self {
         let (across, down) = chart.plotting_area().get_pixel_range();
         let [left, right, top, bottom] =
@@ -52,7 +53,7 @@ impl Chart {
         Self { data: wide.apply_coord_spec(chart.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
-    /// Right end of the data: of the frame, or of the space for numbers in it.
+    /// Right end of the data, points: the beginning of the space for numbers, without such a space the frame.
     pub(crate) fn data_right(&self) -> f64 {
         Some(self.x.last)
             .filter(|last| last.is_finite())
@@ -82,13 +83,13 @@ impl Chart {
         self.reach(x, y).filter(|_| self.is_plottable(&(x, y)))
     }
 
-    /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end.
+    /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end. `None` for NaN.
     pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
         (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS_PER_POINT, f64::from(up) / UNITS_PER_POINT))
     }
 
-    /// Place of a pair of values inside the frame.
+    /// Page point of a pair of values; `None` if it is not inside the frame.
     pub(crate) fn inside(&self, x: f64, y: f64) -> Option<PagePoint> {
         self.page_point(x, y).filter(|place| self.rect.contains(*place))
     }
@@ -110,7 +111,7 @@ impl Chart {
         self.x.is_plottable(*x) && self.y.is_plottable(*y)
     }
 
-    /// Line through pairs, broken at gaps.
+    /// Line through pairs, broken at pairs that are not on the scales.
     pub(crate) fn line(
         &self,
         name: Option<&str>,

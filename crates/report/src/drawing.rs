@@ -23,8 +23,11 @@ const LEVEL: u8 = 9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
     svg: String,
+    /// Width on the page, points.
     width: f64,
+    /// Height on the page, points.
     height: f64,
+    /// Resolution of the PNG, dots per inch.
     dpi: f64,
 }
 
@@ -89,6 +92,8 @@ impl Drawing {
     }
 
     /// Writes `stem.svg` and `stem.png` into `dir`, which is made if it is missing; returns their paths in this order.
+    ///
+    /// Fails with [`ReportError::Write`] if a file or the folder cannot be written, and as [`Self::png`] does.
     pub fn write(&self, dir: &Path, stem: &str) -> Result<(PathBuf, PathBuf), ReportError> {
         let put = |path: PathBuf, bytes: &[u8]| match fs::write(&path, bytes) {
             Ok(()) => Ok(path),

@@ -24,8 +24,9 @@ type Rgb = [u8; 3];
 impl IndexedImage {
     /// Image of opaque RGBA pixels, four bytes each; the alpha byte is ignored.
     ///
-    /// In addition to the colours of large areas, the palette holds the first colour of each level, on the finest of
-    /// 256, 128, …, 4 levels per channel that leaves few enough; any other colour becomes the nearest of these.
+    /// In addition to the colours of large areas, the palette holds the first colour of each combination of levels. The
+    /// number of levels per channel is the largest of 256, 128, …, 4 that gives at most 256 colours. Any other colour
+    /// becomes the nearest colour of the palette.
     pub fn from_rgba(rgba: &[u8]) -> Self {
         let (pixels, _) = rgba.as_chunks::<4>();
         let runs = || pixels.chunk_by(|p, next| p == next).map(|run| ([run[0][0], run[0][1], run[0][2]], run.len()));
@@ -43,7 +44,7 @@ impl IndexedImage {
     }
 }
 
-/// The flat colours, and the first other colour on each of `levels` levels per channel.
+/// The flat colours, and the first colour of each combination of levels, from 0 to `levels` in every channel.
 fn palette(colours: &[Rgb], levels: u32) -> Vec<Rgb> {
     let level = |channel: u8| (u32::from(channel) * levels + 127) / 255;
     let mut levels_seen = HashSet::new();

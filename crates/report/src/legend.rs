@@ -61,7 +61,7 @@ impl LegendEntry {
         self.sample_width(theme) + text_width(&self.label, theme.small_font, false)
     }
 
-    /// Lines of the name in a width that includes the sample.
+    /// Lines of the name in a width that includes the sample, points.
     pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
         wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }

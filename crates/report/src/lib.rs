@@ -1,8 +1,8 @@
 //! Tables and journal-grade figures of stored results.
 //!
 //! This crate draws given data and computes no science: every number in a table or a figure is plain data in the units
-//! of the reader (degrees, seconds). From the field it has the names of methods with their colours, the axes of
-//! heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
+//! of the reader (degrees, seconds). Of ship manoeuvring it contains only the names of methods with their colours, the
+//! axes of heading, rudder and yaw rate, and the figure of a zig-zag; it depends on no crate of ships or trials.
 //!
 //! | to learn about | read |
 //! |---|---|
@@ -40,6 +40,7 @@ mod page;
 pub mod palette;
 pub mod printable;
 pub mod style;
+mod svg_group;
 pub mod table;
 pub mod theme;
 

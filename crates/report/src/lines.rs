@@ -2,7 +2,7 @@
 
 use crate::fonts::text_width;
 
-/// Line spacing, in font sizes.
+/// Line spacing of keys and remarks, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
 /// Lines of [`wrap`], as equal in length as possible without breaking a word.
@@ -16,7 +16,7 @@ pub(crate) fn balanced(text: &str, size: f64, bold: bool, width: f64) -> Vec<Str
 /// Words of a text; a unit in brackets is one word.
 fn unbroken_parts(text: &str) -> Vec<String> {
     let mut parts: Vec<String> = Vec::new();
-    // Not at every white space: a no-break space keeps a symbol and its value together.
+    // Only at plain spaces: a no-break space keeps a symbol and its value together.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         match parts.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
             Some(unit) => *unit = format!("{unit} {word}"),

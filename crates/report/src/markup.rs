@@ -16,7 +16,7 @@ pub fn symbol(text: &str) -> String {
     format!("{ITALIC_ON}{text}{ITALIC_OFF}")
 }
 
-/// Runs of upright and italic type of a text.
+/// Runs of upright and italic type of a text without the marks, each with `true` if it is italic.
 pub(crate) fn runs(text: &str) -> Vec<(bool, &str)> {
     let mut italic = false;
     let mut runs = Vec::new();

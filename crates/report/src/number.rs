@@ -31,7 +31,8 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `value` with `digits` significant digits; a power of ten outside 1e-4 to 1e6.
+/// `value` with `digits` significant digits, and with a power of ten if its magnitude is below 1e-4 or from 1e6 on;
+/// [`MISSING`] if it is not finite.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return MISSING.into();
@@ -60,7 +61,8 @@ pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
     }
 }
 
-/// `(1.23 ± 0.04)×10⁻⁵` for a value below 0.001 or from 100,000 on; otherwise as [`with_uncertainty`].
+/// `(1.23 ± 0.04)×10⁻⁵` for a magnitude below 0.001 or from 100,000 on, unless it is zero; otherwise as
+/// [`with_uncertainty`].
 pub fn uncertain(value: f64, sd: Option<f64>) -> String {
     if value != 0.0 && value.is_finite() && !(1e-3..1e5).contains(&value.abs()) {
         let exponent = value.abs().log10().floor() as i32;
@@ -71,7 +73,7 @@ pub fn uncertain(value: f64, sd: Option<f64>) -> String {
     with_uncertainty(value, sd)
 }
 
-/// `[0.0989, 0.1017]`: both ends to the decimal that their distance supports; [`MISSING`] if there is none.
+/// `[0.0989, 0.1017]`: both ends to the decimal that their distance supports; [`MISSING`] without a finite interval.
 pub fn interval(bounds: Option<[f64; 2]>) -> String {
     match bounds {
         Some([lo, hi]) if lo.is_finite() && hi.is_finite() => {
@@ -83,7 +85,8 @@ pub fn interval(bounds: Option<[f64; 2]>) -> String {
     }
 }
 
-/// A value with as many decimals as [`interval`] gives the ends of its interval; four significant digits without one.
+/// A value with as many decimals as [`interval`] gives the ends of its interval; four significant digits without an
+/// interval of positive length.
 pub fn with_supported_digits(value: f64, bounds: Option<[f64; 2]>) -> String {
     match bounds.map(|[lo, hi]| (hi - lo) / STANDARD_DEVIATIONS) {
         Some(sd) if sd.is_finite() && sd > 0.0 => fixed(value, decimals_of_uncertainty(sd)),
@@ -91,7 +94,7 @@ pub fn with_supported_digits(value: f64, bounds: Option<[f64; 2]>) -> String {
     }
 }
 
-/// `value` to `decimals` places, or [`MISSING`].
+/// `value` with `decimals` decimals; [`MISSING`] for `None` or a value that is not finite.
 pub fn optional(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| MISSING.into(), |v| fixed(v, decimals))
 }
@@ -118,7 +121,7 @@ fn decimals_for(value: f64, digits: usize) -> usize {
     (digits as i32 - 1 - exponent).clamp(0, MAX_DECIMALS) as usize
 }
 
-/// Decimals that show an uncertainty with one digit, or with two if that digit would be a 1 or a 2.
+/// Decimals that show an uncertainty with one digit, or with two if that digit would be a 1 or a 2 or round up to 10.
 fn decimals_of_uncertainty(sd: f64) -> usize {
     let leading = sd / 10f64.powi(exponent(sd, 2));
     decimals_for(sd, if (2.95..9.5).contains(&leading) { 1 } else { 2 })

@@ -70,12 +70,14 @@ impl<P: PartialEq> PlacedFigures<P> {
 pub struct Page {
     /// Paragraphs, headlines, tables and places of figures, without the blank lines between them.
     blocks: Vec<String>,
+    /// Figures in reading order.
     figures: Vec<PageFigure>,
+    /// Titles of the parts that a browser shows on request.
     folded: Vec<String>,
 }
 
 impl Page {
-    /// Page from a filled-in template and the figures that have a place in it.
+    /// Page from a filled-in template; figures without a place in it are dropped.
     ///
     /// # Panics
     ///
@@ -137,13 +139,13 @@ impl Page {
     }
 }
 
-/// Level of a headline, 1 for the title of the page.
+/// Level of a headline, 1 for the title of the page; `None` for any other block.
 fn level(block: &str) -> Option<usize> {
     let level = block.len() - block.trim_start_matches('#').len();
     (level > 0 && block[level..].starts_with(' ')).then_some(level)
 }
 
-/// Stem of the figure whose place a block is.
+/// Stem of the figure whose place a block is; `None` for any other block.
 fn stem(block: &str) -> Option<&str> {
     block.strip_prefix("![")?.strip_suffix(']')
 }

@@ -1,7 +1,8 @@
 //! Looks of origins: one colour, marker and dash for every identification method, the record, the truth and the bound,
-//! the same in every figure. Colours: Okabe & Ito (2008), "Color universal design", distinguishable
-//! with any common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat
-//! the distinction for prints in grey.
+//! the same in every figure. The colours of methods are those of Okabe & Ito (2008), "Color universal design",
+//! distinguishable with any common colour blindness. Two methods have the wine red and the indigo of Tol (2021)
+//! instead, because yellow is too pale on paper and black is the colour of the truth. Marker and dash repeat the
+//! distinction for prints in grey.
 
 use serde::{Deserialize, Serialize};
 
@@ -152,6 +153,7 @@ impl Look {
     }
 }
 
+/// Methods with their looks, in the order of figures.
 const METHODS: [(&str, Look); 8] = [
     ("fourier-published", Look::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
     ("fourier-projected", Look::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
@@ -175,7 +177,7 @@ const OUTSIDE: [RGBColor; 6] = [
 
 /// Common id of external estimators.
 const EXTERNAL: &str = "external";
-/// Number of different looks of external estimators: 6 colours, 5 markers, 4 dashes.
+/// Number of different looks of external estimators: the least common multiple of 6 colours, 5 markers and 4 dashes.
 const LOOKS: u64 = 60;
 
 const BROWN: RGBColor = RGBColor(0x66, 0x11, 0x00);
@@ -185,8 +187,8 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
-/// Look of a variant: a shade of the colour of its method, a hollow marker and a separate dash; every external
-/// estimator has another colour.
+/// Look of a variant: one of three shades of the colour of its method, a hollow marker, and marker and dash by its
+/// number. External estimators have different colours, which repeat after six.
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
@@ -202,7 +204,7 @@ fn variant_look(method: &str, number: usize) -> Look {
     Look { marker, dash, hollow: true, colour }
 }
 
-/// Look of a series: shade, shape and dash differ, so that it never looks like a method.
+/// Look of a series: a grey, so that it does not look like a method, and marker and dash by its number.
 fn series_look(number: usize) -> Look {
     const SHADES: [RGBColor; 3] = [INK, RGBColor(0x5A, 0x5A, 0x5A), RGBColor(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];

@@ -1,5 +1,5 @@
-//! Printable characters. All others (control characters, marks that turn the direction of writing, characters without a
-//! meaning) are written as escapes, so that no text from outside can act on a terminal or corrupt a file.
+//! Printable characters. All others (control characters, marks that reverse the direction of writing, unassigned and
+//! private characters) are written as escapes, so that no text from outside can act on a terminal or corrupt a file.
 
 use std::borrow::Cow;
 

@@ -22,7 +22,7 @@ use crate::theme::Theme;
 /// Maximum share of the page for the names of rows; longer ones are broken into lines.
 pub(crate) const MAX_NAMES_SHARE: f64 = 0.42;
 
-/// Density of the lines between ticks on a logarithmic axis.
+/// Opacity of the grid lines between the ticks of a logarithmic axis.
 const LIGHT: f64 = 0.45;
 
 /// Distance from the middle of a line of text to its base line, in font sizes.
@@ -47,13 +47,13 @@ pub(crate) struct Grid {
     pub columns: Vec<AxisSide>,
     /// Rows with their heights in points.
     pub rows: Vec<(AxisSide, f64)>,
-    /// Text above each panel, row by row; empty if there is none.
+    /// Text above each panel, row by row; `None` for a panel without text, empty without texts.
     pub heads: Vec<Option<LegendEntry>>,
-    /// Number of panels, if the last row is not full.
+    /// Number of panels, if the last row may not be full; `None` for full rows.
     pub panels: Option<usize>,
-    /// Common title of all vertical axes, for rows too low to have one each.
+    /// Common title of all vertical axes, for rows too low to have one each; `None` without a common title.
     pub shared_title: Option<String>,
-    /// Left margin, points, if it has to agree with another grid.
+    /// Left margin, points, if it has to agree with another grid; `None` for the width of the labels and titles.
     pub left: Option<f64>,
 }
 
@@ -117,12 +117,12 @@ impl Sheet {
         let theme = self.theme.clone();
         let room = theme.width - 2.0 * theme.small_font;
         let fewest = legend::rows(entries, room, &theme).len();
-        // Rows of equal length look better than full rows and a rest.
+        // Rows of equal length look better than full rows and a short last one.
         let narrower = (8..=20).map(|share| legend::rows(entries, 0.05 * f64::from(share) * room, &theme));
         let rows = narrower.into_iter().find(|rows| rows.len() == fewest).unwrap_or_default();
         let widest = rows.iter().map(|row| legend::row_width(row, &theme)).fold(0.0, f64::max);
         for row in &rows {
-            // Single entries are below each other.
+            // With one entry in every row, all begin at the same left edge.
             let width = if rows.len() == entries.len() { widest } else { legend::row_width(row, &theme) };
             let mut x = ((theme.width - width) / 2.0).max(theme.small_font);
             self.y += LEADING * theme.small_font;

@@ -109,7 +109,8 @@ impl Style {
     /// Theme with the sizes, resolution, colours and limits of this style. `width_mm` is not applied: the caller makes
     /// a theme of that width.
     ///
-    /// Fails if a value is out of its range, or if a key is unknown.
+    /// Fails if a size is out of its range, if a colour has an unknown key or no valid value, if two keys that share a
+    /// colour have different values, and if limits are not in ascending order.
     pub fn apply_to(&self, theme: Theme) -> Result<Theme, StyleError> {
         let share = |key: &'static str, value: Option<f64>, usual: f64, range: [f64; 2]| match value {
             Some(value) if !(range[0]..=range[1]).contains(&value) => Err(StyleError::Size { key, value, range }),

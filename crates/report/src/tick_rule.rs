@@ -10,7 +10,7 @@ pub enum TickRule {
     Angle,
     /// Seconds, in multiples of 30 s or 60 s over a long time; no free space at the ends.
     Time,
-    /// Equal factors (a logarithmic scale); zero has a separate place beyond a break, and negative values are omitted.
+    /// Equal factors (a logarithmic scale). Zero has a separate place before a break, and negative values are omitted.
     Logarithmic,
     /// From 0 to 100 %, whatever the data.
     Percent,

@@ -108,7 +108,7 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Motion in a state.
     fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;
 
-    /// Dead time between the rudder signal and the acting rudder, s; negative for a late clock in a record.
+    /// Dead time between the rudder signal and the acting rudder, s; negative if the recorded rudder lags the heading.
     fn dead_time(&self) -> R {
         R::from(0.0)
     }

@@ -13,18 +13,19 @@ use crate::particulars::Particulars;
 /// Error of linear equations that have no indices K, T1, T2, T3.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LinearError {
-    /// Straight motion is neutrally stable, by the determinant of the damping matrix: K and T1 are infinite.
+    /// Determinant of the damping matrix that is zero or not finite; at zero the hull is neutrally stable, and K and T1
+    /// are infinite.
     #[error("the hull is neutrally stable (det N = {0}): K and T1 are infinite")]
     NeutrallyStable(f64),
-    /// Mass matrix that is not positive definite, by its determinant, or an entry that is not finite.
+    /// Mass matrix that is not positive definite or not finite, given by its determinant.
     #[error("the mass matrix needs positive inertia and a positive determinant, found det M = {0}")]
     Mass(f64),
     /// Sway and yaw oscillate: T1 and T2 are complex.
     #[error("T1 and T2 are complex: their sum is {sum} and their product {product}")]
     Oscillatory {
-        /// T1 + T2.
+        /// T1' + T2'.
         sum: f64,
-        /// T1 T2.
+        /// T1' T2'.
         product: f64,
     },
     /// No steering: a steady rudder does not turn the ship, so K is zero and T3 undefined.
@@ -35,7 +36,7 @@ pub enum LinearError {
 /// Linear equations of sway and yaw in a prime system: M ν' + N ν = b δ, ν = (v', r').
 ///
 /// N holds the centrifugal terms (m' + m_x', x_G' m'). The rudder is positive to starboard, so b₂ > 0 and b₁ < 0 for a
-/// stern rudder. Any one factor on a row (½ρL² or ½ρLd) drops out.
+/// stern rudder. A common factor of a row, such as ½ρL² or ½ρLd, cancels in the indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrimeSwayYaw {
     /// Mass and added mass.
@@ -82,9 +83,9 @@ impl PrimeSwayYaw {
     /// T1 T2 = det M / det N, T1 + T2 = (n11 m22 + n22 m11 − n12 m21 − n21 m12) / det N,
     /// K = (n11 b2 − n21 b1) / det N, T3 = (m11 b2 − m21 b1) / (n11 b2 − n21 b1).
     ///
-    /// T1 is the larger time constant if both have one sign, and the negative time constant if the signs differ (det N
-    /// < 0: the ship is course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a mass matrix that
-    /// is not positive definite, an oscillating hull and a hull that a steady rudder does not turn.
+    /// T1 is the time constant of larger magnitude if both have one sign, and the negative time constant if the signs
+    /// differ (det N < 0: the ship is course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a
+    /// mass matrix that is not positive definite, an oscillating hull and a hull that a steady rudder does not turn.
     pub fn indices(&self) -> Result<PrimeIndices, LinearError> {
         let Self { M, N, b } = self;
         let (det_M, det_N) = (det(M), det(N));

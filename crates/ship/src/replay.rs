@@ -6,7 +6,7 @@ use crate::integrate::RungeKutta4;
 use crate::signal::Polyline;
 use estimation::number::Real;
 
-/// Recorded signals that are the input of a replay.
+/// Recorded signals that are the input of a replay; `None` for a channel that is not in the record.
 #[derive(Debug, Clone, Copy)]
 pub struct RecordedSignals<'a> {
     /// Rudder angle, rad.
@@ -17,7 +17,7 @@ pub struct RecordedSignals<'a> {
     pub sway: Option<&'a Polyline>,
     /// Relative wind speed, m/s.
     pub wind_speed: Option<&'a Polyline>,
-    /// Direction the relative wind comes from, rad, unwrapped.
+    /// Direction the relative wind comes from, clockwise from the bow, rad, unwrapped.
     pub wind_from: Option<&'a Polyline>,
     /// Propeller revolutions, 1/s.
     pub propeller: Option<&'a Polyline>,
@@ -61,7 +61,7 @@ struct Ramp {
 }
 
 impl Ramp {
-    /// Piece that ends at a corner; constant before the first corner and after the last.
+    /// Piece that ends at the corner with this index; constant before the first corner and after the last.
     fn before(signal: &Polyline, corner: usize) -> Self {
         let (time, value) = (signal.times(), signal.values());
         match corner {

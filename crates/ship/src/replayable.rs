@@ -44,14 +44,14 @@ pub trait Replayable<R: Real = f64>: Dynamics<R> {
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory.
     fn reset_motion(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
-    /// `true` if a measured channel acts on the ship.
+    /// `true` if the ship uses this measured channel, in its equations or for its initial state.
     fn needs(&self, channel: Regressor) -> bool;
 
     /// Time constants that steps must resolve.
     fn time_constants(&self) -> TimeConstants;
 }
 
-/// Ship that can be replayed in real and in dual numbers; these give sensitivities to the initial state.
+/// Ship that can be replayed in real and in dual numbers; the dual numbers give sensitivities to the initial state.
 pub trait ReplayedShip: Replayable + fmt::Debug {
     /// Ship in dual numbers.
     fn tangent(&self) -> Box<dyn Replayable<Tangent>>;

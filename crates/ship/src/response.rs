@@ -2,9 +2,9 @@
 //!
 //! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
 //!
-//! with δ_e the recorded rudder after dead time and every transformation, and s_a, s_b the products of the scales of
-//! the effects. With [`SecondOrderTimeConstants`] the right-hand side f becomes the rate of an extra state s and
-//! T₂ r' = s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with
+//! with δ_e the recorded rudder after dead time and every transformation, and s_a, s_b the products of the factors of
+//! the effects. With [`SecondOrderTimeConstants`] the right-hand side f becomes the rate of an extra state s, and T₂ r'
+//! = s − (1 + T₂ a s_a) r + b s_b T₃ (δ_e + δ_r). This is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with
 //! T₁ = 1/a (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r stays a term of f).
 //!
 //! Sources: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships; Bech and Wagner Smitt (1969),
@@ -58,9 +58,10 @@ pub struct ResponseModel {
     places: Vec<Place>,
     parameters: usize,
     states: usize,
-    /// Number of effects up to the last with states; later effects need no rudder for memory.
+    /// Number of effects up to and including the last effect with states; later effects have no memory to advance.
     with_memory: usize,
-    /// Index of the effect that makes the response second-order; the first state of this effect is s.
+    /// Index of the effect that makes the response second-order, whose first state is s; `None` for a first-order
+    /// response.
     second_order: Option<usize>,
 }
 
@@ -144,7 +145,7 @@ impl ResponseModel {
 pub struct Response<R = f64> {
     model: ResponseModel,
     parameters: Vec<R>,
-    /// T₂ and T₃ of a second-order response, and the index of its state s.
+    /// T₂ and T₃ of a second-order response, and the index of its state s; `None` for a first-order response.
     coupling: Option<(SecondOrderTimeConstants<R>, usize)>,
 }
 
@@ -248,7 +249,7 @@ impl<R: EffectReal> Response<R> {
 }
 
 impl<R: EffectReal> Replayable<R> for Response<R> {
-    /// `true` if an effect of this response uses a measured channel.
+    /// `true` if an effect of this response uses this measured channel.
     fn needs(&self, channel: Regressor) -> bool {
         self.model.effects.iter().any(|effect| effect.uses(channel))
     }
@@ -265,8 +266,8 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
         pace
     }
 
-    /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the memory of the
-    /// effects belongs to a constant rudder angle.
+    /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the states of the
+    /// effects are those of a straight approach at a constant rudder angle.
     fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
@@ -277,14 +278,15 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
             now.rudder = R::effect_equations(effect).rudder(p, z, now.rudder);
         }
         if let Some((coupling, s)) = self.coupling {
-            // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces it.
+            // Initial yaw acceleration of the first-order response, so that T₂ = T₃ reproduces that response.
             let lead = coupling.T2 - coupling.T3;
             state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
         }
     }
 
     /// Sets heading (rad) and yaw rate (rad/s) of a state and keeps the memory of all effects. The state s of a
-    /// second-order response is adjusted so that the yaw acceleration is unchanged.
+    /// second-order response is adjusted so that the yaw acceleration is unchanged, except for effects that scale the
+    /// damping.
     fn reset_motion(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);

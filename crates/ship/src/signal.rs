@@ -21,7 +21,7 @@ pub enum SignalError {
     Point {
         /// Index of the offending point.
         index: usize,
-        /// Time of the point before, s; −∞ for the first.
+        /// Time of the point before, s; −∞ for the first point.
         before: f64,
         /// Time of the point, s.
         time: f64,

@@ -15,9 +15,9 @@ use crate::wave_path;
 /// Upper estimate of the cost of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunCost {
-    /// Duration of the run, s; every awaited heading counts with the maximum wait.
+    /// Maximum duration of the run, s; every wait for a heading counts with the maximum wait.
     pub duration: f64,
-    /// Number of steps of solver, weather and sea, rows, and display readings.
+    /// Maximum number of steps of solver, weather and sea, rows, and display readings.
     pub steps: f64,
     /// Key and value of the part with the longest duration.
     longest: (&'static str, f64),
@@ -59,7 +59,8 @@ impl Simulation {
         Err(SpecificationError { key, value, expected: Requirement::Steps { estimate: steps, most } })
     }
 
-    /// Parts of the manoeuvre, up to `count` steps.
+    /// Lead-in and at most `count` steps of the manoeuvre, as parts; `key_of_waits` replaces the keys of waits for a
+    /// heading.
     fn steps(&self, count: usize, key_of_waits: Option<&'static str>) -> Vec<RunPart> {
         let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in)];
         let wait = self.longest_wait + self.helmsman.reaction_time;
@@ -71,7 +72,7 @@ impl Simulation {
                 Trigger::Deviation { .. } if is_slow => {
                     RunPart { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration: wait }
                 }
-                // Number of the awaited execute.
+                // Number of the execute that ends the wait.
                 Trigger::Deviation { .. } => {
                     RunPart { key: key_of_waits.unwrap_or(key), value: (orders + 1) as f64, duration: wait }
                 }

@@ -8,7 +8,7 @@ use crate::stream::{RngPurpose, StreamKey, normal};
 use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
-/// Tolerance of the awaited heading, rad: a multiple of the quantum can be below it by a rounding error.
+/// Tolerance at the heading of the next execute, rad: a multiple of the quantum can be below it by a rounding error.
 const READING_TOLERANCE: f64 = 1e-9;
 
 /// Reading of the heading display by the helmsman.
@@ -65,8 +65,8 @@ impl HeadingDisplay {
         self.next as f64 * self.period
     }
 
-    /// Reads the display at its next time, with the heading of the compass `psi` (rad); `true` if `side` · deviation ≥
-    /// `angle`.
+    /// Reads the display at its next time, with the heading of the compass `psi` (rad); `true` if `side` (±1) times the
+    /// deviation from the base course is at least `angle` (rad).
     pub fn read(&mut self, psi: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;

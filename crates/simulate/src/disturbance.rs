@@ -182,7 +182,7 @@ impl Wind {
     }
 
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
-    /// (m/s) and a ship with speed `U` (m/s) ahead; the drift angle is neglected.
+    /// (m/s) and a ship with speed `U` (m/s) ahead on `heading` (rad); the drift angle is neglected.
     pub fn relative_wind(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
         trial::relative_wind(speed, self.from, U, heading)
     }

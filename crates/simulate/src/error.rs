@@ -168,13 +168,13 @@ pub enum SimulateError {
         /// Yaw rate, rad/s.
         yaw_rate: f64,
     },
-    /// Awaited heading that was never reached.
+    /// Heading of the next execute that was never reached.
     #[error("the heading did not deviate by {}° within {} s after execute \
         {execute}", ShortNumber(.angle.to_degrees()), ShortNumber(*.waited))]
     NeverReached {
-        /// Executes made so far.
+        /// Number of executes made so far.
         execute: usize,
-        /// Deviation awaited, rad.
+        /// Deviation from the base course at the next execute, rad.
         angle: f64,
         /// Time waited, s.
         waited: f64,
@@ -182,9 +182,9 @@ pub enum SimulateError {
     /// Record whose start is an execute that was never made.
     #[error("the record starts at execute {execute}, but the run ended after {made} executes")]
     NoSuchExecute {
-        /// Execute awaited, from 1.
+        /// Number of the execute, from 1.
         execute: usize,
-        /// Executes made.
+        /// Number of executes made.
         made: usize,
     },
     /// Run that was stopped because it exceeded a limit.

@@ -90,7 +90,7 @@ impl SteeringGear {
         Self { rate: Some(rate), ..Self::default() }
     }
 
-    /// Gear with missing settings taken from a ship, if its source gives them.
+    /// Gear with missing settings taken from a ship, if its source gives them; the maximum angle is otherwise 90°.
     pub fn with_ship_defaults(self, ship: &Ship) -> Self {
         Self {
             rate: self.rate.or(ship.rudder_rate),
@@ -99,12 +99,12 @@ impl SteeringGear {
         }
     }
 
-    /// Maximum rudder rate, rad/s; infinite for none.
+    /// Maximum rudder rate, rad/s; infinite without a rate limit.
     pub fn largest_rate(&self) -> f64 {
         self.rate.unwrap_or(f64::INFINITY)
     }
 
-    /// Maximum rudder angle to either side, rad; infinite for none.
+    /// Maximum rudder angle to either side, rad; infinite without stops.
     pub fn largest_rudder(&self) -> f64 {
         self.maximum.unwrap_or(f64::INFINITY)
     }
@@ -118,8 +118,8 @@ impl SteeringGear {
         error::check_positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
     }
 
-    /// Appends the response to an order that arrives at `start` with the rudder at `from`: segments, the last without
-    /// end.
+    /// Appends the response to an order (rad) that arrives at `start` (s) with the rudder at `from` (rad): segments,
+    /// the last without end.
     fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
         let (rate, maximum) = (self.largest_rate(), self.largest_rudder());
         let target = order.clamp(-maximum, maximum);

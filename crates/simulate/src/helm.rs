@@ -57,7 +57,7 @@ pub struct Helm<'a> {
     orders: usize,
     /// Time of the last order, s; before the first order, the time at which it is due.
     last: f64,
-    /// Time of an order that is decided but not yet given, s.
+    /// Time of an order that is decided but not yet given, s; `None` without such an order.
     due: Option<f64>,
     end: f64,
     finished: bool,

@@ -32,7 +32,7 @@ pub(crate) struct TrueRunView<'a> {
     pub jitter: &'a [f64],
     /// Rudder path, executes and readings of the helmsman.
     pub run: &'a RunResult,
-    /// Rudder path reconstructed from the orders; `None` if the rudder is recorded.
+    /// Rudder path reconstructed from the orders; `None` if the rudder feedback is recorded.
     pub assumed: Option<&'a RudderPath>,
     /// Rudder order before the first execute, rad; `None` if there is no order.
     pub first_order: Option<f64>,
@@ -65,7 +65,7 @@ pub(crate) struct PerfectReadings {
 /// Record as columns, with the kept rows.
 pub(crate) struct WrittenRows {
     pub columns: Columns,
-    /// `true` for every kept row; `None` if all are kept.
+    /// For every row, `true` if it is kept; `None` if all are kept.
     pub kept: Option<Vec<bool>>,
 }
 
@@ -109,7 +109,7 @@ impl PerfectReadings {
     }
 }
 
-/// Record of a scene with the random errors of `key`.
+/// Record of the readings `scene` with the random errors of `key`.
 pub(crate) fn with_sensor_errors(
     sensors: &Sensors,
     scene: &PerfectReadings,
@@ -131,7 +131,8 @@ pub(crate) fn with_sensor_errors(
     WrittenRows { columns, kept }
 }
 
-/// Channels of a scene, all but the rudder, with the random errors of `key`, and the flags of [`WrittenRows`].
+/// Channels of the readings `scene`, all but the rudder, with the random errors of `key`, and the flags of
+/// [`WrittenRows`].
 pub(crate) fn channels_with_errors(
     sensors: &Sensors,
     scene: &PerfectReadings,
@@ -237,7 +238,7 @@ fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     }
 }
 
-/// Reading of the helmsman at time `t`; `None` if there is none.
+/// Reading of the helmsman at time `t`, s; `None` without a reading at this time.
 fn reading_at(readings: &[DisplayReading], t: f64) -> Option<&DisplayReading> {
     let at = readings.partition_point(|reading| reading.time < t - INSTANT_TOLERANCE_S);
     readings.get(at).filter(|reading| reading.time <= t + INSTANT_TOLERANCE_S)

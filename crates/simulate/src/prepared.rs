@@ -15,8 +15,9 @@ use crate::wave_path::SeaWaves;
 #[derive(Debug, Clone)]
 pub struct PreparedSimulation {
     simulation: Simulation,
+    /// True run that all keys share; `None` if random inputs act on the run.
     true_run: Option<TrueRun>,
-    /// Record whose times and rudder the records of all keys share; `None` if these differ.
+    /// Record whose times and rudder are equal in the records of all keys; `None` if these differ.
     first: Option<Trial>,
 }
 

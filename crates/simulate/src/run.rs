@@ -161,7 +161,7 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.propagator.record_rows(&self.path, &limits, rows);
     }
 
-    /// Latest time, s, at which an awaited heading must be reached.
+    /// Latest time, s, at which the heading of the next execute must be reached.
     fn deadline(&self) -> f64 {
         self.executes.last().map_or(0.0, |execute| execute.time) + self.longest_wait
     }
@@ -183,8 +183,8 @@ impl<'a, P: Propagator> Run<'a, P> {
         self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
     }
 
-    /// Moves the ship to `to`, or to the crossing of an awaited heading if that is earlier; `true` if the crossing is
-    /// earlier.
+    /// Moves the ship to `to` (s), or to the crossing of the heading `watch` if that is earlier; `true` if the crossing
+    /// is earlier.
     fn travel(&mut self, to: f64, watch: Option<AwaitedHeading>) -> Result<bool, SimulateError> {
         let (ship, path) = (&mut self.propagator, &self.path);
         loop {

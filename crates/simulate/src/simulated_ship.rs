@@ -55,7 +55,7 @@ impl SimulatedShip {
         Self { dynamics, first_order: None, random_headings: Vec::new(), particulars: None }
     }
 
-    /// Ship of a ship of the registry, with its particulars.
+    /// Simulated ship from a ship of the registry, with its particulars.
     pub fn from_ship(ship: &Ship) -> Self {
         let simulated = match &ship.model {
             ShipModel::Response(response) => Self::from_response(response.clone()),
@@ -84,7 +84,7 @@ impl SimulatedShip {
         self.first_order
     }
 
-    /// Spectra of the random headings of the response model.
+    /// Random headings of the response model, as narrow-band processes.
     pub fn random_headings(&self) -> &[NarrowBand] {
         &self.random_headings
     }

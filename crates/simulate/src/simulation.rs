@@ -120,7 +120,7 @@ pub struct Truth {
     pub rudder: Vec<f64>,
     /// Total disturbance as equivalent rudder angle, rad.
     pub disturbance: Vec<f64>,
-    /// Speed through the water, m/s; `None` if the ship has none.
+    /// Speed through the water, m/s; `None` if the equations of the ship have no speed.
     pub speed: Option<Vec<f64>>,
     /// Orders from the beginning of the run to the end of the record, including orders before the first row.
     pub executes: Vec<HelmOrder>,
@@ -330,7 +330,7 @@ impl Simulation {
         Ok(self.look_back(rows, instruments, &run.finish()))
     }
 
-    /// Rudder path reconstructed from the orders; `None` if the rudder is recorded.
+    /// Rudder path reconstructed from the orders; `None` if the rudder feedback is recorded.
     fn assumed_path(&self, executes: &[HelmOrder]) -> Option<RudderPath> {
         let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
         let gear = SteeringGear::with_rate(rate);

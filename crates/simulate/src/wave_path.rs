@@ -17,6 +17,7 @@ pub(crate) fn cell_width(waves: &NarrowBand) -> f64 {
     PHASE_PER_CELL / waves.frequency
 }
 
+/// Realisation of one narrow-band process; `ends` has ξ (rad) and ξ' (rad/s) at both ends of the current cell.
 #[derive(Debug)]
 struct WavePath {
     rng: ChaCha8Rng,

@@ -7,8 +7,7 @@ use rand::rngs::ChaCha8Rng;
 use crate::disturbance::{Disturbances, Squall};
 use crate::stream::{RngPurpose, StreamKey, normal};
 
-/// Default cell width, s: short against every correlation time of weather and every time constant of a
-/// ship.
+/// Default cell width, s: short against every correlation time of weather and every time constant of a ship.
 pub(crate) const DEFAULT_CELL_S: f64 = 0.1;
 
 /// Weather within one cell, linear in time.

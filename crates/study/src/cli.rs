@@ -97,7 +97,7 @@ impl<R: Args> With<R> {
     }
 }
 
-/// Entry point of the program; returns its exit code: 0 done, 1 the work failed, 2 the input is wrong, 130 Ctrl-C.
+/// Runs the program and returns its exit code: 0 on success, 1 if the work fails, 2 for wrong input, 130 after Ctrl-C.
 pub fn main() -> ExitCode {
     interrupt::install();
     let arguments: Vec<OsString> = std::env::args_os().collect();
@@ -116,7 +116,9 @@ fn asks_for_json(arguments: &[OsString]) -> bool {
         || arguments.iter().any(|word| word == "--format=json")
 }
 
-/// The parsed arguments; help and version are printed at once.
+/// Parsed arguments. A request for help or version prints it and ends the program.
+///
+/// Fails for an unknown command and for invalid arguments.
 fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
     if let Some(name) = mistaken_command(arguments.get(1)) {
         let commands: Vec<String> =
@@ -145,7 +147,7 @@ pub fn usage_failure(usage: &clap::Error) -> Failure {
     Failure::input(message.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
 }
 
-/// First argument that is a single word and neither a command nor an existing path.
+/// First argument if it is a word that is neither a command nor an existing path: a mistyped command.
 fn mistaken_command(first: Option<&OsString>) -> Option<String> {
     let name = first?.clone().into_string().ok()?;
     let is_word = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');

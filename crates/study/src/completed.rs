@@ -35,23 +35,23 @@ impl<P: TypedValueParser> TypedValueParser for Completed<P> {
     }
 }
 
-/// Names of the methods of the project.
+/// Ids of all methods that do not combine other methods.
 pub fn method_names() -> Vec<String> {
     let built = registry::default_settings().into_iter().filter_map(|settings| settings.build().ok());
     built.map(|method| method.id().to_owned()).collect()
 }
 
-/// Names of the methods of the project, and [`ALL`].
+/// Ids of [`method_names`], and [`ALL`].
 pub fn method_names_or_all() -> Vec<String> {
     method_names().into_iter().chain([String::from(ALL)]).collect()
 }
 
-/// Names of the methods of a scenario.
+/// Ids of the methods of a scenario: those of [`method_names`], a trace, and the straight-on forecast.
 pub fn scenario_method_names() -> Vec<String> {
     method_names().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
 }
 
-/// Names of the tasks of the benchmark.
+/// Ids of the tasks of the benchmark.
 pub fn task_names() -> Vec<String> {
     BenchTask::ALL.map(|task| task.id().to_owned()).into()
 }

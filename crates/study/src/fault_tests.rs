@@ -1,5 +1,5 @@
-//! Fault injection: every file operation of a study, a report and a rerun fails once. Afterwards the same commands end
-//! with the same bytes, or report the missing files.
+//! Fault injection: every file operation of a study, a report and a rerun fails once. The repeated command then ends
+//! with the same bytes as one without a fault.
 
 use std::fs;
 use std::ops::Range;
@@ -83,8 +83,9 @@ fn copy(from: &Path, to: &Path) {
 /// Number of threads that inject faults.
 const THREADS: u64 = 4;
 
-/// Lets every operation of `work` fail once, alone and with all later ones, each time in a folder that begins as
-/// `before`. A repetition has to end with the same bytes as the work without a fault.
+/// Lets every operation of `work` fail once alone and once with all later ones, each time in a copy of `before`, or in
+/// an empty folder if that is `None`. A repetition has to end with the same bytes as the work without a fault. Returns
+/// the number of operations.
 fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> + Sync) -> u64 {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let place = |name: &str| -> PathBuf {
@@ -115,7 +116,7 @@ fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> 
         assert!(content(&folder) == expected, "{name} {number}, which ended with {outcome:?}");
         fs::remove_dir_all(folder).expect("it was there");
     };
-    // Not on the threads that run trials, which would deadlock.
+    // On separate threads: the threads that run the trials would deadlock if they ran this work.
     std::thread::scope(|scope| {
         for first in 0..THREADS {
             let fail = &fail;

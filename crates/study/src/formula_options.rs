@@ -23,7 +23,7 @@ pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
     ship::effects::parse_formula(line).map_err(|error| error.to_string())
 }
 
-/// Effects read from a file. Fails with the line of the first invalid formula.
+/// Effects read from a file. Fails if it cannot be read, or with the line of the first invalid formula.
 pub fn read_formulas(path: &str) -> Result<Formulas, String> {
     const FILE: FileKind = FileKind { name: "a file of effects", max_bytes: 1 << 20 };
     let text = read_text(Path::new(path), FILE).map_err(|error| error.to_string())?;

@@ -7,10 +7,12 @@ use campaign::failure::{Failure, FailureKind};
 
 use crate::{failures, screen};
 
+/// `true` while trials run: the first interruption is then a request to stop.
 static LISTENING: AtomicBool = AtomicBool::new(false);
+/// `true` after the first interruption.
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Ends the program during work that cannot be stopped, with the message of a failure.
+/// Reports a failure and ends the program at once, for work that cannot be stopped otherwise.
 pub fn exit_with_failure(failure: &Failure) -> ! {
     std::process::exit(i32::from(failures::report_failure(failure)))
 }

@@ -1,4 +1,4 @@
-//! Options and arguments of the commands. Longer than most: each option is declared once. Nothing here acts.
+//! Options and arguments of the commands: declarations only, each option once.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -33,7 +33,7 @@ pub struct RunRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Maximum number of threads; no machine has more cores, and the system refuses many more.
+/// Maximum number of threads, also on a machine with more cores; the system refuses many more.
 pub const MAX_THREADS: i64 = 1024;
 
 /// Options of every command.
@@ -138,7 +138,7 @@ pub struct SampleFileOptions {
 pub enum TimePoint {
     /// Seconds on the clock of the record.
     Seconds(f64),
-    /// Reading of the ship's clock.
+    /// Reading of the ship's clock, and the text that was given for it.
     Clock(Stamp, String),
 }
 
@@ -294,7 +294,7 @@ pub struct TraceRequest {
 impl TraceRequest {
     /// Effects that are required, excluded or added as formulas.
     ///
-    /// Fails if a name is neither on the list nor that of a formula.
+    /// Fails if a name is that of neither a listed effect nor a formula.
     pub fn selection(&self) -> Result<Selection, Failure> {
         let of_file = self.effects.iter().flat_map(|formulas| formulas.all());
         let formulas: Vec<Arc<Formula>> = self.effect.iter().chain(of_file).cloned().collect();

@@ -45,10 +45,13 @@ const MIN_ELAPSED: Duration = Duration::from_secs(1);
 pub struct ProgressSteps {
     bar: ProgressBar,
     label: &'static str,
+    /// Number of steps that remained at the beginning.
     most: u64,
+    /// Number of these that are finished.
     done: AtomicU64,
     side_by_side: usize,
     begin: Instant,
+    /// `true` if the forecast has been printed, or is not to be printed.
     is_told: AtomicBool,
 }
 
@@ -66,12 +69,12 @@ impl ProgressSteps {
         }
     }
 
-    /// Counts a finished step; prints the forecast once after the first second.
+    /// Counts a finished step. Prints the forecast once, after the first second, if no bar is visible.
     pub fn advance(&self) {
         self.bar.inc(1);
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
         if elapsed >= MIN_ELAPSED && !self.is_told.swap(true, Ordering::Relaxed) {
-            // The steps under way are about as far as the first finished one.
+            // Steps that run at the same time finish at about the same time as the first.
             let line = forecast(self.label, self.most, done.max(self.side_by_side as u64), elapsed);
             line.iter().for_each(|line| screen::warn(line));
         }
@@ -83,7 +86,7 @@ impl ProgressSteps {
     }
 }
 
-/// Expected total time of `most` steps, given that `done` steps took `elapsed`; `None` for short work.
+/// Line with the expected total time of `most` steps if `done` steps took `elapsed`; `None` below [`MIN_FORECAST_S`].
 fn forecast(label: &str, most: u64, done: u64, elapsed: Duration) -> Option<String> {
     let seconds = elapsed.as_secs_f64() * (most as f64 / done as f64).max(1.0);
     (seconds >= MIN_FORECAST_S).then(|| format!("{most} {label}: about {seconds:.0} s"))

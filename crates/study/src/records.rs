@@ -58,6 +58,8 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 /// Log of a file; adds the `warnings` of the reader. `columns` is a description of its columns, or a folder with such a
 /// description; the channels of `parts` are joined with the log.
+///
+/// Fails if the file is not a log, or if no results can be named after it.
 pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
@@ -95,9 +97,10 @@ fn refused(error: ReadError) -> Failure {
     failure.with_code(code)
 }
 
-/// Records to identify: the selected part of each, or its zig-zag.
+/// Records to identify: the selected part of each log, else its only zig-zag, or the whole log if it holds none.
 ///
-/// Fails if a record cannot be read, or if a log holds several zig-zags and none is selected.
+/// Fails if a record cannot be read, if a log holds several zig-zags and none is selected, or if an option for one
+/// record is given for several.
 pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
     let files = expand(paths)?;
     let one_only = [
@@ -111,7 +114,7 @@ pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warn
     files.iter().map(|path| read(path, options, warnings)).collect()
 }
 
-/// Records for replay only: the zig-zag of each.
+/// Records for replay only, without the options for one record: the only zig-zag of each log, or the whole log.
 pub fn read_for_replay(
     paths: &[PathBuf],
     options: &ReadingOptions,
@@ -131,7 +134,8 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
     )
 }
 
-/// Record in a log: the selected part, or its zig-zag. `path` is its name in messages.
+/// Record in a log: the selected part, else the only zig-zag, or the whole log if it holds none. `path` is its name in
+/// messages.
 ///
 /// Fails if that part is not a record, or if the log holds several zig-zags and none is selected.
 pub fn trial_from_log(
@@ -154,6 +158,9 @@ pub fn trial_from_log(
 
 /// Record with the particulars of hull and trial given as options, which override those of a sidecar. Particulars of a
 /// ship of another length are dropped.
+///
+/// Fails if the draughts contradict one another, if particulars of the hull are given without length and speed, or if
+/// one is out of range.
 fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<Trial, Failure> {
     let mut conditions = trial.conditions().clone();
     let length = trial.particulars().map(|ship| ship.length);
@@ -191,7 +198,9 @@ pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
     }
 }
 
-/// Time on the clock of a record, s.
+/// Requested time on the clock of a record, s; `None` if none is requested.
+///
+/// Fails for a time of day that the clock does not show.
 fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f64>, Failure> {
     match asked {
         None => Ok(None),
@@ -208,7 +217,8 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
     }
 }
 
-/// Length and approach speed from the options; the speed from the record if it is not given.
+/// Length and approach speed from the options; `None` without a length. A speed that is not given is the median of the
+/// positive speeds in the first tenth of the record, with a warning.
 fn ship(
     log: &Log,
     path: &Path,
@@ -235,7 +245,7 @@ pub fn missing_track_warning(shown: &MethodIndependentResults) -> Option<Warning
     shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
-/// Message on a negative dead time, s: the rudder was logged late. It includes the remedy.
+/// Message on a rudder that was logged `late` seconds late, which shows as a negative dead time; with the remedy.
 pub fn late_rudder_message(late: f64) -> String {
     let late = ShortNumber::rounded(late, 2);
     format!(
@@ -244,8 +254,8 @@ pub fn late_rudder_message(late: f64) -> String {
     )
 }
 
-/// Warnings on repeated records. A record given twice for identification makes the errors too small, and a fitted
-/// record gives no validation.
+/// Warnings on repeated records. A record given twice for identification makes the standard deviations too small, and a
+/// fitted record gives no validation.
 pub fn repetition_warnings(trials: &[Trial], held_out: &[Trial]) -> Vec<Warning> {
     let is_in =
         |records: &[Trial], trial: &Trial| records.iter().any(|other| file_and_hash(other).1 == file_and_hash(trial).1);
@@ -283,7 +293,7 @@ pub fn warning_source_of(trial: &Trial) -> WarningSource {
     WarningSource::Record(file_and_hash(trial).0.to_owned())
 }
 
-/// Path and hash of a measured record.
+/// Path and SHA-256 of a measured record; for a simulated one its scenario and an empty hash.
 pub fn file_and_hash(trial: &Trial) -> (&str, &str) {
     match trial.origin() {
         RecordOrigin::Measured { file, sha256 } => (file, sha256),

@@ -1,4 +1,4 @@
-//! Records of similar ships of different size or speed, brought to the scale of the first record.
+//! Records of similar ships of different length, brought to the scale of the first record.
 
 use report::number::significant;
 use ship::Particulars;
@@ -12,7 +12,7 @@ pub struct RescaledRecords {
     pub trials: Vec<Trial>,
     /// Held-out records, at the same scale.
     pub held_out: Vec<Trial>,
-    /// Original scales of the records; `None` if all had one scale.
+    /// Original scales of the records; `None` if the declared ones do not differ.
     pub scales: Option<Scales>,
 }
 
@@ -50,7 +50,7 @@ impl RescaledRecords {
     }
 }
 
-/// Length and speed for dimensional results: those of the first record that declares them.
+/// Length and speed for dimensional results: those of the first record that declares them; `None` if no record does.
 pub fn particulars(trials: &[Trial]) -> Option<Particulars> {
     trials.iter().find_map(Trial::particulars)
 }

@@ -24,7 +24,7 @@ pub struct ScaleOptions {
 }
 
 impl ScaleOptions {
-    /// Given approach speed, m/s.
+    /// Approach speed from either option, m/s; `None` without both.
     pub fn speed(&self) -> Option<f64> {
         self.speed_m_s.or(self.speed_kn.map(|speed| speed * KNOT))
     }
@@ -73,7 +73,7 @@ fn day(text: &str) -> Result<String, String> {
 }
 
 impl TrialOptions {
-    /// Particulars of the options, completed by those of a record.
+    /// Particulars given as options; missing ones are taken from a record.
     pub fn completed_by(&self, of_record: &TrialParticulars) -> TrialParticulars {
         let Self { ship_name, date, draught_fore_m, draught_aft_m } = self.clone();
         TrialParticulars { ship_name, date, draught_fore: draught_fore_m, draught_aft: draught_aft_m }
@@ -81,12 +81,13 @@ impl TrialOptions {
     }
 }
 
-/// Options with the keys of [`PARTICULARS`], without length and speed.
+/// Given particulars of hull, rudder and propeller, each with its value in the unit of [`PARTICULARS`]. Length and
+/// speed are in [`ScaleOptions`].
 #[derive(Debug, Clone, Default)]
 pub struct FormOptions(Vec<(&'static Particular, f64)>);
 
 impl FormOptions {
-    /// Key of the first given particular.
+    /// Key of the first given particular; `None` if none is given.
     pub fn first(&self) -> Option<&'static str> {
         self.0.first().map(|(particular, _)| particular.key)
     }

@@ -48,7 +48,7 @@ impl Observer for Terminal {
         self.note(&format!("warning: {line}"));
     }
 
-    fn is_asked_to_stop(&self) -> bool {
+    fn should_stop(&self) -> bool {
         interrupt::is_stop_requested()
     }
 

@@ -12,7 +12,7 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// Number of threads for parallel work.
+/// Number of threads for parallel work: that of the option, else of the environment, else one for every processor.
 pub fn count(common: &CommonOptions) -> usize {
     let variable = std::env::var(THREADS).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
     common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
@@ -26,7 +26,7 @@ fn threads_of(variable: Option<&str>, cores: usize) -> usize {
     asked.filter(|threads| *threads > 0).unwrap_or(cores).min(MAX_THREADS as usize)
 }
 
-/// Starts the threads of all parallel work.
+/// Starts the threads of all parallel work. Fails if the system refuses them.
 pub fn start(common: &CommonOptions) -> Result<(), Failure> {
     let threads = count(common);
     rayon::ThreadPoolBuilder::new()

@@ -1,6 +1,7 @@
 //! Analysis of the records of one ship: a pipeline of stages, each a function of the results before it.
 //!
-//! prepare → base → full fit → noise law → structures → named effects or shapes → comparison → document
+//! rudder noise and outliers → base → full model and noise law → structures → comparison → named effects or shapes →
+//! residual analysis → hulls → document
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -20,6 +21,7 @@ use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, initial_state_guesses, replay_base};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
+use crate::fold_observer::{FoldObserver, NoObserver};
 use crate::full::{self, FullModel};
 use crate::hulls;
 use crate::leave_one_out::leave_one_out;
@@ -35,7 +37,6 @@ use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::shape::{self, ShapeAnalysis};
 use crate::structures::{self, Structures};
-use crate::watcher::{NoWatcher, Watcher};
 use crate::weights::NoiseLaw;
 
 /// Result of a trace: document, base, weighted structures, noise law and replays.
@@ -49,16 +50,16 @@ pub struct Analysis {
     pub identification: Vec<RecordComparison>,
     /// Comparisons on the held-out records.
     pub validation: Vec<RecordComparison>,
-    /// Leave-one-out comparisons, if several records are fitted and none is held out; `None` if the remaining records
-    /// give no base or no finite replay.
+    /// Leave-one-out comparison of every fitted record; `None` if the other records give no base or no finite replay.
+    /// Empty unless the analysis is thorough, several records are fitted and none is held out; also empty if stopped.
     pub leave_one_out: Vec<Option<RecordComparison>>,
     /// Structures with their probabilities.
     pub structures: Structures,
-    /// Full model (all candidates) with the noise law of its residual.
+    /// Full model with the most probable noise law.
     pub full: FullModel,
     /// Heading noise under that law, averaged over the records.
     pub noise: HeadingNoise,
-    /// Hull models of three degrees of freedom, averaged with the structures.
+    /// Hull models of three degrees of freedom, averaged with the structures; empty if none is fitted.
     pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
     pub(crate) candidates: Vec<Arc<Term>>,
@@ -80,7 +81,8 @@ fn of_heading(trials: &[Trial]) -> Vec<Trial> {
 
 /// Records without compass outliers, and the times (s) of the removed readings.
 ///
-/// Outliers are found by [`maximum_likelihood::spike_times`].
+/// Outliers are found by [`maximum_likelihood::spike_times`], record by record; a record for which it fails keeps all
+/// readings.
 pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     let spikes = |trial: &Trial| {
         maximum_likelihood::spike_times(std::slice::from_ref(trial))
@@ -107,12 +109,12 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
     Err(TraceError::NoCandidate { effect, reason })
 }
 
-/// Identifies the effects missing from the first-order model of one ship. `validation` records are only replayed: no
-/// fit depends on them.
+/// Identifies the effects missing from the first-order model of one ship. `validation` records are only replayed: the
+/// model does not depend on them.
 ///
-/// Compass outliers are removed from all records and listed; a rudder with measurement noise is replaced by its
-/// piecewise linear estimate. Fails if a setting is out of range, if a requested effect is no candidate, or if the base
-/// cannot be fitted or replayed.
+/// Compass outliers are removed from all records; the document lists those of the fitted records. A rudder with
+/// measurement noise is replaced by its piecewise linear estimate. Fails if a setting is out of range, if a requested
+/// effect is no candidate, if the base cannot be fitted, or if a replay is not finite.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -128,7 +130,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// #     delta = next;
 /// # }
 /// # let read = trial::reader::read_from_reader("run.csv".as_ref(), table.as_bytes(), None, None)?;
-/// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
+/// // A zig-zag of a ship with cubic damping.
 /// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
 /// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");
 /// let errors = &analysis.identification[0];
@@ -136,28 +138,28 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
-    trace_with_watcher(trials, validation, settings, &NoWatcher)
+    trace_with_observer(trials, validation, settings, &NoObserver)
 }
 
 /// [`trace`] with an observer of the leave-one-out folds, which can stop them.
-pub fn trace_with_watcher(
+pub fn trace_with_observer(
     trials: &[Trial],
     validation: &[Trial],
     settings: &Settings,
-    watcher: &dyn Watcher,
+    observer: &dyn FoldObserver,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
     if settings.uses_heading_alone {
-        return analyse(&of_heading(trials), &of_heading(validation), settings, watcher);
+        return analyse(&of_heading(trials), &of_heading(validation), settings, observer);
     }
-    analyse(trials, validation, settings, watcher)
+    analyse(trials, validation, settings, observer)
 }
 
 fn analyse(
     trials: &[Trial],
     validation: &[Trial],
     settings: &Settings,
-    watcher: &dyn Watcher,
+    observer: &dyn FoldObserver,
 ) -> Result<Analysis, TraceError> {
     let (trials, rudder_noises) = rudder::estimate_rudders(trials);
     let (trials, outliers) = without_spikes(&trials);
@@ -179,7 +181,7 @@ fn analyse(
     let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
     let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
     let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
-    let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, watcher);
+    let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, observer);
     let leave_one_out = if is_folded { folds() } else { Vec::new() };
     let parts = report::TraceParts {
         trials: &trials,
@@ -240,7 +242,8 @@ fn weighed(
     if calm.1.ship_mean_square() < best.1.ship_mean_square() { calm } else { best }
 }
 
-/// Candidate terms that the selection admits; fails if a required effect is not among them.
+/// Candidate terms that the selection admits, then the requested number of monomials; fails if a required effect is no
+/// candidate.
 fn candidates_of(
     records: &[PreparedRecord],
     trials: &[Trial],
@@ -305,9 +308,9 @@ pub struct PlausibleStructure {
     pub weight: f64,
     /// Response T r' + r = K (δ + δ_r) with the effects of the structure.
     pub response: Response,
-    /// Indices of the fitted parameters.
+    /// Indices of the fitted parameters among those of the response.
     pub fitted: Vec<usize>,
-    /// Covariance of the fitted parameters; `None` if it is singular.
+    /// Covariance of the fitted parameters in this order; `None` if the precision of the fit is singular.
     pub covariance: Option<DMatrix<f64>>,
 }
 
@@ -318,7 +321,8 @@ impl Analysis {
         best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
     }
 
-    /// Shape analysis of the residual of the most probable structure; `None` if its covariance is singular.
+    /// Shape analysis of the residual of the most probable structure; `None` without a structure, or if its
+    /// sensitivities are linearly dependent.
     pub fn shapes(&self) -> Option<ShapeAnalysis> {
         shape::analyse_shapes(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
     }
@@ -338,7 +342,7 @@ impl Analysis {
         self.structures.members().into_iter().map(member).collect()
     }
 
-    /// Weighted ships of the structure average, without the terms of single records.
+    /// Average of structures and hulls for replays, without the terms of single records.
     pub fn average(&self) -> ModelAverage {
         self.averaged(&self.structures.members()).average()
     }
@@ -348,7 +352,7 @@ impl Analysis {
         AveragedModel { members, hulls: &self.hulls, law: &self.full.law, fitted_record: None, time: self.problem.time }
     }
 
-    /// Response of the most probable structure.
+    /// Response of the most probable structure, without the terms of single records; the base if there is no structure.
     pub fn ship(&self) -> Response {
         let members = self.structures.members();
         members.first().map_or_else(

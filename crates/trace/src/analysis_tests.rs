@@ -10,9 +10,11 @@ use trial::{DeclaredConditions, DeclaredWeather, Trial};
 
 use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
-use crate::{Analysis, EffectId, Selection, Settings, Verdict, Watcher, WeightingRule, trace, trace_with_watcher};
+use crate::{
+    Analysis, EffectId, FoldObserver, Selection, Settings, Verdict, WeightingRule, trace, trace_with_observer,
+};
 
-/// Record of a ship whose damping grows with the cube of its yaw rate.
+/// Record of a ship with cubic damping.
 fn damped(plan: TrialPlan) -> Trial {
     let damping: Arc<dyn Effect> = listed_effect("nonlinear_damping", "r³");
     record(&ship(vec![(damping, vec![80.0])]), plan)
@@ -159,18 +161,18 @@ fn probabilities_move_with_the_prior_odds() {
 fn nobody_has_to_wait_for_the_folds() {
     #[derive(Default)]
     struct Hurried(AtomicUsize);
-    impl Watcher for Hurried {
+    impl FoldObserver for Hurried {
         fn begin_folds(&self, count: usize) {
             self.0.fetch_add(count, Ordering::Relaxed);
         }
 
-        fn is_asked_to_stop(&self) -> bool {
+        fn should_stop(&self) -> bool {
             self.0.load(Ordering::Relaxed) > 0
         }
     }
     let trials = [10.0, 15.0].map(|rudder_deg| damped(TrialPlan { rudder_deg, ..TrialPlan::default() }));
     let hurried = Hurried::default();
-    let stopped = trace_with_watcher(&trials, &[], &Settings::default(), &hurried).expect("a base");
+    let stopped = trace_with_observer(&trials, &[], &Settings::default(), &hurried).expect("a base");
     let whole = traced(&trials);
     assert_eq!((hurried.0.into_inner(), stopped.leave_one_out.len(), whole.leave_one_out.len()), (2, 0, 2));
     assert_eq!((named(&stopped), stopped.base.response), (named(&whole), whole.base.response));

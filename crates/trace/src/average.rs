@@ -1,4 +1,4 @@
-//! Model average: the weighted mean of the replays of several structures, or their weighted median if one diverges.
+//! Model average: the weighted mean of the replays of several models, or their weighted median if one diverges.
 //!
 //! Source: Hoeting, Madigan, Raftery and Volinsky (1999), Bayesian model averaging: a tutorial.
 
@@ -11,13 +11,13 @@ use crate::record::PreparedRecord;
 use crate::replay_errors::{ReplayDepth, WindowError, full_replay, restarted_headings, root_mean_square};
 use crate::weights::NoiseLaw;
 
-/// Maximum ratio of the error of a replay to the median error; above it the replay counts as diverged.
+/// Maximum ratio of the error of a replay to the median error of all members; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
 
-/// Model average: ships, whose replays are averaged with their posterior weights.
+/// Model average: ships with the weights of their replays.
 #[derive(Debug)]
 pub struct ModelAverage {
-    /// Posterior weight and ship of every member; the weights sum to one.
+    /// Weight and ship of every member; a mean is divided by the sum of the weights.
     pub members: Vec<(f64, Box<dyn ReplayedShip>)>,
 }
 
@@ -25,7 +25,7 @@ pub struct ModelAverage {
 pub struct AveragedModel<'a> {
     /// Structures with their posterior weights.
     pub members: &'a [(f64, &'a StructureFit)],
-    /// Hulls; each has the total weight of the structures.
+    /// Hulls; each has the same weight as all structures together.
     pub hulls: &'a [HullEstimate],
     /// Noise law of the records.
     pub law: &'a NoiseLaw,
@@ -59,7 +59,7 @@ impl AveragedModel<'_> {
         1.0 / (1 + self.hulls.len()) as f64
     }
 
-    /// Weights of the ships: structures first.
+    /// Weights of the ships, structures first.
     pub fn weights(&self) -> impl Iterator<Item = f64> {
         let share = self.hull_weight();
         self.members.iter().map(move |(weight, _)| share * weight).chain(self.hulls.iter().map(move |_| share))
@@ -77,8 +77,9 @@ impl AveragedModel<'_> {
 }
 
 impl ModelAverage {
-    /// Replays every member from its best initial state near one of the `starts`, and restarted in the windows of the
-    /// depth; `None` if no replay is finite.
+    /// Average of the replays of all members, each from its best initial state near one of the `starts` (rad, rad/s),
+    /// with the errors of the replays restarted in the windows of `depth`. A member without a finite replay is left
+    /// out; `None` if no member has one.
     pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], depth: ReplayDepth) -> Option<AverageReplay> {
         let replays: Vec<(f64, &dyn ReplayedShip, Replay)> = self
             .members
@@ -118,7 +119,8 @@ fn is_divergent(errors: &[f64]) -> bool {
     sorted[sorted.len() - 1] > MAX_ERROR_RATIO * sorted[sorted.len() / 2]
 }
 
-/// Weighted mean of columns, or their weighted median if a member diverges; `None` without members.
+/// Function that combines columns row by row: their weighted mean, or their weighted median if a member diverges by its
+/// error; `None` without members.
 fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
     if weights.is_empty() {
         return None;

@@ -1,10 +1,11 @@
-//! 95 % bands of a replay by Monte-Carlo: noise of the record, errors of the parameters, spread of the structures.
+//! 95 % bands of a replay by Monte Carlo: noise of the record, errors of the parameters, spread of the members.
 //!
-//! The residual of a replay whose initial state was fitted to the record is e = M (w + J d) with the noise w of the
-//! record, the sensitivities J of the heading, the errors d of the parameters, and M, the projection off the fitted
-//! initial state. On a fitted record d is the effect of w on the parameters, d = −H⁻¹ Jᵀ W w; on another record d is
-//! sampled from their posterior covariance. The variance between the replays of the structures is added. Effects that
-//! are not among the candidates are not covered.
+//! The residual of a replay whose initial state was fitted to the record is e = M (w + J d). Here w is the noise of the
+//! record, J the sensitivities of the heading, d the errors of the parameters (true minus estimated), and M the
+//! projection off the fitted initial state. On a fitted record d is the effect of w on the estimate, d = −H⁻¹ Jᵀ Σ⁻¹ w,
+//! with the covariance Σ of the noise and the posterior precision H of the parameters; on another record d is sampled
+//! from their posterior covariance. The variances of the hulls and the variance between the replays of the members are
+//! added. Effects that are not among the candidates are not covered.
 
 use estimation::column::dot;
 use estimation::kalman::{MAX_STATES, System};
@@ -25,7 +26,8 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 /// Number of sampled residuals for each structure.
 const DRAWS: usize = 100;
 
-/// Half-width of the band at every row of a replay, rad; `None` if the covariance of the parameters is singular.
+/// Half-width of the band at every row of the replay `mean`, rad; `None` if the covariance of a structure is singular,
+/// or if a hull has no variance on the record.
 pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
@@ -78,6 +80,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 /// Sampler of the residual of one structure on one record.
 struct ResidualSampler {
     system: System<MAX_STATES>,
+    /// Standard deviation of the white noise of a full row, rad.
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
     white: Vec<f64>,
@@ -90,8 +93,9 @@ struct ResidualSampler {
     errors: ParameterErrors,
 }
 
+/// Law of the parameter errors of one structure.
 enum ParameterErrors {
-    /// Rows H⁻¹ Jᵀ W of a fitted record: parameter errors from its noise, by parameter.
+    /// Matrix H⁻¹ Jᵀ Σ⁻¹ of a fitted record, one row per parameter: the errors follow from the noise of the record.
     OfRecord(DMatrix<f64>),
     /// Root of the covariance of the parameters, for a record that was not fitted.
     Independent(DMatrix<f64>),
@@ -125,7 +129,7 @@ impl ResidualSampler {
         let record = &problem.records[0];
         let errors = match after.fitted_record {
             Some(_) => {
-                // The noise of the record entered the fit: the errors of the parameters are −H⁻¹ Jᵀ W w.
+                // The noise of the record entered the fit: the errors of the parameters are −H⁻¹ Jᵀ Σ⁻¹ w.
                 let weights = problem.weights(&law);
                 let mut whitened = columns.clone();
                 weights.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
@@ -148,8 +152,8 @@ impl ResidualSampler {
         })
     }
 
-    /// One draw of the residual M (w + J d), rad, at the observed rows: noise w and parameter errors d, projected off
-    /// the initial state by M.
+    /// One draw of the residual M (w + J d) at the observed rows, rad, with the correlated noise alone in w. The white
+    /// noise of a fitted record enters d; its direct contribution is added to the band by [`half_width`].
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
         let coloured: Vec<f64> = self.system.sample_path(&mut normal).into_iter().map(|x| x * self.deviation).collect();

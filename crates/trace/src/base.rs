@@ -6,12 +6,12 @@ use trial::Trial;
 
 use crate::settings::TraceError;
 
-/// First-order response fitted to some records.
+/// First-order response fitted jointly to one or several records, with its replays.
 #[derive(Debug, Clone)]
 pub struct FittedBase {
-    /// K, T and δ_r by `output-error`, which is global in 1/T.
+    /// Estimate of K, T and δ_r by `output-error`, which searches both signs of 1/T.
     pub estimate: Estimate,
-    /// Replays of the records.
+    /// Replay of every record.
     pub replays: Vec<Replay>,
 }
 
@@ -27,7 +27,7 @@ impl FittedBase {
         Ok(Self { estimate, replays })
     }
 
-    /// Initial heading (rad) and yaw rate (rad/s) of the replays.
+    /// Initial heading (rad) and yaw rate (rad/s) of every replay.
     pub fn initial(&self) -> Vec<[f64; 2]> {
         self.replays.iter().map(Replay::initial).collect()
     }

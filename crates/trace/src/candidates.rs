@@ -10,7 +10,7 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
-/// Minimum relative change of the propeller revolutions that counts as recorded.
+/// Minimum range of the propeller revolutions, relative to their root mean square, at which they are an input.
 const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
 /// Prior probability of an effect.
@@ -28,11 +28,11 @@ pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
     times.find(|time| time.is_normal()).unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
-/// Scales of the manoeuvres in some records; `span` is the duration of `record`.
+/// Scales of the manoeuvres in some records of a ship with L/U = `time` (s); the span is that of `record`.
 pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
     let mean_speed = mean_square(records, |record| record.speed.as_ref());
-    // The speed is needed if speed or sway is recorded.
+    // Approach speed: declared, otherwise the root mean square of the recorded speed, otherwise that of the sway.
     let speed = |square: f64| approach.unwrap_or(mean_speed.unwrap_or(square).sqrt());
     let propeller = || {
         let mean = mean_square(records, |record| record.propeller.as_ref())?.sqrt();

@@ -28,8 +28,8 @@ pub struct ReplayResult {
     pub replay: Replay,
     /// Errors of the replay.
     pub errors: ReplayErrors,
-    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` if it was not computed, or if
-    /// the covariance of the parameters is singular.
+    /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` for the base, if the
+    /// covariance of a structure is singular, or if a hull has no variance on the record.
     pub band: Option<Vec<f64>>,
 }
 
@@ -69,7 +69,7 @@ impl BandCoverage {
         self.headings_inside as f64 / self.headings as f64
     }
 
-    /// `true` if the coverage is consistent with the nominal 95 %.
+    /// `true` if the coverage is not significantly below the nominal 95 %.
     pub fn is_nominal(&self) -> bool {
         self.interval[1] >= NOMINAL_COVERAGE
     }
@@ -82,7 +82,7 @@ impl ReplayResult {
         BandCoverage::from_flags(&pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>())
     }
 
-    /// Mean width of the band, rad.
+    /// Mean width of the band, rad; `None` without a band.
     pub fn width(&self) -> Option<f64> {
         let band = self.band.as_ref().filter(|band| !band.is_empty())?;
         Some(2.0 * band.iter().sum::<f64>() / band.len() as f64)
@@ -133,7 +133,8 @@ impl RecordComparison {
     }
 }
 
-/// Start values of the initial heading (rad) and yaw rate (rad/s): at rest, of the base, as measured.
+/// Start values of the initial heading (rad) and yaw rate (rad/s): the first heading with zero yaw rate, the initial
+/// state of the replay of the base, and the first heading with the measured yaw rate. The last two only where known.
 pub fn initial_state_guesses(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
@@ -161,8 +162,8 @@ pub fn replay_base(
 }
 
 impl AveragedModel<'_> {
-    /// Comparison on a held-out record; if `thorough`, also the errors with a moment of the record and by horizon.
-    /// Fails if no replay is finite.
+    /// Comparison on a held-out record; if `thorough`, also the errors with a fitted moment of the record and by
+    /// horizon. Fails if no replay is finite.
     pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::unaveraged(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
@@ -207,7 +208,7 @@ impl AveragedModel<'_> {
     }
 }
 
-/// Errors of a replay on a record, as far as `depth` asks; without a band, and without errors under a fitted moment.
+/// Replay of a record with its errors to the extent of `depth`, without a band and without errors with a fitted moment.
 fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
     let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);

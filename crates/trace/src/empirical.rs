@@ -15,13 +15,12 @@ use crate::candidates::{mean_square, record_scales};
 use crate::model::Term;
 use crate::record::PreparedRecord;
 
-/// Monomial c r^i δ^j ψ^k U^l added to the rudder angle; every factor is divided by its root mean square in the
-/// records.
+/// Monomial c r^i δ^j ψ^k U^l added to the rudder angle; r, δ, ψ and U are divided by their scales in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monomial {
     /// Exponents and magnitudes.
     pub powers: &'static MonomialPowers,
-    /// Root mean squares of r (rad/s), δ (rad), ψ (rad) and U (m/s).
+    /// Scales: 0.2 U/L for r (rad/s), the maximum rudder angle for δ (rad), root mean squares for ψ (rad) and U (m/s).
     pub size: [f64; 4],
 }
 
@@ -30,9 +29,9 @@ pub struct Monomial {
 pub struct MonomialPowers {
     /// Exponents of r, δ, ψ and U.
     pub exponents: [i32; 4],
-    /// `true` if one factor of each power is a magnitude.
+    /// `true` for a power with one factor as a magnitude, in the order of the exponents.
     magnitude: [bool; 4],
-    /// Notation: "δ|δ||ψ|".
+    /// Notation, such as "δ|δ||ψ|".
     pub form: &'static str,
     equation: String,
 }
@@ -70,7 +69,7 @@ impl MonomialPowers {
         format!("proposal = c{}", factors.collect::<String>())
     }
 
-    /// Value for r (rad/s), δ and ψ (rad), without magnitudes.
+    /// Product of the powers of r (rad/s), δ and ψ (rad); magnitudes and the power of U are ignored.
     pub fn value_at(&self, factors: [f64; 3]) -> f64 {
         factors.iter().zip(self.exponents).map(|(factor, power)| factor.powi(power)).product()
     }
@@ -102,7 +101,7 @@ pub fn without_magnitudes() -> &'static [MonomialPowers] {
 /// Log prior odds of an empirical term.
 const LOG_ODDS: f64 = -4.0;
 
-/// Candidate terms of the monomials, if the records have the required channels.
+/// Candidate terms of the monomials whose channels the records have; `time` is L/U, s.
 pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
     let about = record_scales(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
@@ -121,7 +120,7 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
 /// Prior standard deviation of a coefficient, rad.
 pub const PRIOR_SD_RAD: f64 = 0.05;
 
-/// Coefficient of an empirical term: a rudder angle, for factors divided by their scales.
+/// Coefficient of an empirical term, rad of rudder, for factors divided by their scales.
 pub const COEFFICIENT: Parameter = Parameter::even(["c", "c", "rad"], [0.0, 0.02], [-10.0, 10.0]);
 
 const PARAMETERS: [Parameter; 1] = [COEFFICIENT];

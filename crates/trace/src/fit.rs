@@ -2,8 +2,10 @@
 //! (Levenberg–Marquardt with bounds and exact derivatives; Moré 1978), and its Laplace evidence (Tierney and Kadane
 //! 1986).
 //!
-//! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the whitening filter W of the
-//! record. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate of every record.
+//! J(θ, x₀) = Σ p |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)². The first sum is over records with the whitening filter W,
+//! the noise variance σ² and the power p of the likelihood. The second sum is over parameters with the prior mean μ and
+//! the prior standard deviation s. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate
+//! of every record.
 
 use estimation::levenberg_marquardt::{Minimum, NormalEquations, Objective, SearchSettings, minimise};
 use nalgebra::{DMatrix, DVector};
@@ -22,7 +24,7 @@ use crate::weights::{NoiseLaw, RecordWhitening};
 pub struct StoppingRule {
     /// Maximum number of accepted Levenberg–Marquardt steps; the fit then ends without convergence, at the best point.
     pub max_steps: usize,
-    /// Predicted decrease of J below which the fit ends.
+    /// Decrease of J, predicted or actual, below which the fit ends.
     pub min_decrease: f64,
 }
 
@@ -53,7 +55,7 @@ impl StoppingRule {
 pub struct FittedRecords {
     /// Prepared records.
     pub records: Vec<PreparedRecord>,
-    /// Noise transitions of the records, for any intensity.
+    /// Noise transitions of the records, independent of the level of the noise.
     pub noise: Vec<RecordNoise>,
     /// Ship time L/U, s.
     pub time: f64,
@@ -84,7 +86,8 @@ impl FittedRecords {
         self.records.iter().map(PreparedRecord::duration).fold(0.0, f64::max)
     }
 
-    /// Log normaliser of the noise density under a law, −½ (Σ n log σ² + Σ log S).
+    /// Log normaliser of the noise density under a law, up to a constant: −½ Σ p (n log σ² + Σ log S) over records with
+    /// n headings and the power p; S are the variances of the innovations in units of σ².
     pub fn log_normaliser(&self, law: &NoiseLaw) -> f64 {
         let whiteners = self.weights(law).whiteners;
         let normaliser = |(number, record): (usize, &PreparedRecord)| {
@@ -258,7 +261,7 @@ pub fn normal_equations(
     normal
 }
 
-/// Distance of a value from the prior mean, in prior standard deviations; 0 for a uniform prior.
+/// Distance of a value from the prior mean, in prior standard deviations; 0 for a uniform prior or a fixed value.
 pub fn prior_deviation(prior: Prior, value: f64) -> f64 {
     if prior.sd > 0.0 && prior.sd.is_finite() { (value - prior.mean) / prior.sd } else { 0.0 }
 }
@@ -268,7 +271,8 @@ pub fn prior_precision(prior: Prior) -> f64 {
     if prior.sd.is_finite() { prior.sd.powi(-2) } else { 12.0 / (prior.highest - prior.lowest).powi(2) }
 }
 
-/// Log normaliser of a prior within its bounds: the factor before exp(−½ ((x − μ)/s)²).
+/// Log normaliser of a prior truncated to its bounds: the logarithm of the factor before exp(−½ ((x − μ)/s)²). 0 for a
+/// fixed value.
 pub fn log_normaliser(prior: Prior) -> f64 {
     if !prior.is_fitted() {
         return 0.0;
@@ -282,7 +286,7 @@ pub fn log_normaliser(prior: Prior) -> f64 {
 }
 
 /// Log marginal likelihood by Laplace's approximation, up to a constant shared by all structures. The probability mass
-/// beyond a bound is excluded.
+/// below a lower bound, or above an upper bound that holds the unknown, is excluded.
 fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);
@@ -297,7 +301,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f
         let push = if held { normal.gradient[k] * sd } else { 0.0 };
         let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
         let room = if push > 0.0 { to_high - push } else { to_low + push };
-        // Ratio of ∫ exp(−½ (x − push)²) within the bounds to the integral without bounds.
+        // Logarithm of ∫ exp(|push| x − ½ x²) dx/√2π up to the bound; far beyond the bound its asymptotic value.
         match room < -5.0 {
             true => -(-room * std::f64::consts::TAU.sqrt()).ln(),
             false => law.cdf(room).ln() + 0.5 * push * push,
@@ -317,7 +321,7 @@ pub struct StructureFit {
     pub initial: Vec<[f64; 2]>,
     /// Heading residual (measured minus replayed) at the observed rows of every record, rad.
     pub residual: Vec<Vec<f64>>,
-    /// Misfit Σ |W e|²/σ².
+    /// Misfit Σ p |W e|²/σ².
     pub misfit: f64,
     /// Prior penalty Σ ((θ − μ)/s)².
     pub penalty: f64,
@@ -328,7 +332,7 @@ pub struct StructureFit {
 }
 
 impl StructureFit {
-    /// Refit without one of the terms.
+    /// Refit without the term of index `out`.
     pub fn refit_without(
         &self,
         out: usize,
@@ -357,7 +361,8 @@ impl StructureFit {
         values.map(|(place, value)| (value, sd(place))).collect()
     }
 
-    /// Covariance of the fitted entries of [`Structure::for_record`] for a record.
+    /// Covariance of the fitted entries of [`Structure::for_record`] for a record; `None` if the precision is singular.
+    /// The deviation of the rudder bias in that record counts as exact.
     pub fn record_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;
         let entries = self.structure.entries();

@@ -28,9 +28,12 @@ pub struct FullModel {
     pub waves_gain: f64,
 }
 
-/// Full models under each plausible noise law of the given `kinds`: (1) law of the stationary candidates only, (2)
-/// with candidates that begin at an instant, (3) heading error only, if one of these laws is a random moment, (4) law
-/// of the base without any candidate. Laws that agree are fitted once.
+/// Full models under every plausible noise law of the given `kinds`.
+///
+/// Up to four laws are estimated. Law 1 describes the residual of the candidates without an instant, and law 2 that of
+/// all candidates. Law 3 describes the latter by heading errors alone; it is added if law 1 or 2 is a random moment.
+/// Law 4 describes the residual of the base alone, and its model has no candidates. Laws 1 and 4 are left out if they
+/// are like another law.
 pub fn fit(
     problem: &FittedRecords,
     base: &FittedBase,
@@ -85,7 +88,7 @@ pub fn fit(
     fulls
 }
 
-/// Base without candidates and the noise law of the residual, as if all misfit were weather.
+/// Base without candidates and the noise law of its residual, as if all misfit were noise.
 fn base_only(problem: &FittedRecords, base: &FittedBase, with_waves: bool, kinds: &[CorrelatedNoise]) -> FullModel {
     let structure = Structure::base(problem.records.len(), problem.time);
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
@@ -98,7 +101,7 @@ fn base_only(problem: &FittedRecords, base: &FittedBase, with_waves: bool, kinds
     FullModel { fit: refit(fit.theta, fit.initial, &law), law, waves_gain }
 }
 
-/// Fit of the base and the stationary candidates, the better of two starts (prior means, neutral values).
+/// Fit of base and candidates without an instant: the better fit from two starts, prior means and neutral values.
 fn fit_stationary(
     problem: &FittedRecords,
     base: &FittedBase,
@@ -117,7 +120,7 @@ fn fit_stationary(
     fits.into_iter().min_by(|a, b| objective(a).total_cmp(&objective(b))).expect("two starts")
 }
 
-/// Start point θ: parameters of the base, no deviations of the rudder bias, then the values of the terms.
+/// Start point θ: parameters of the base, zero deviations of the rudder bias, then the values of the terms.
 pub fn start_point(structure: &Structure, response: &FirstOrder, of_terms: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut theta = vec![response.inverse_T, response.K_over_T, response.rudder_bias];
     theta.resize(structure.base_count(), 0.0);

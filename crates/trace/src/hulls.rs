@@ -1,4 +1,5 @@
-//! Hull models of three degrees of freedom, averaged with the structures if the residual is more than noise.
+//! Hull models of three degrees of freedom, averaged with the structures if the residual is more than noise or earlier
+//! trials are given.
 
 use identify::hull::{self, HullEstimate};
 use rayon::prelude::*;
@@ -8,8 +9,9 @@ use crate::comparison::RecordComparison;
 use crate::residual_analysis::{ResidualAnalysis, heading_error_squares};
 use crate::settings::Settings;
 
-/// Hulls that fit the records about as well as the structures, with earlier trials as priors. No hulls without length
-/// and speed of the ship; without earlier trials, none if the structures leave only noise.
+/// Hulls supported by the records, with earlier trials as priors: their residual is at most three times the smallest of
+/// all hulls and of the structure average. Empty if hulls are not requested, and without length and speed of the ship;
+/// without earlier trials also if the structures leave only noise.
 pub fn fit(
     trials: &[Trial],
     settings: &Settings,

@@ -5,8 +5,9 @@
 //!
 //! −2 log p = Σ n log σ² + Σ log S + J + log det(XᵀX/σ² + P).
 //!
-//! The penalty of a colour is log n per parameter (Schwarz 1978). All structures share the law, so the misfit of a
-//! structure without an effect is never attributed to weather. The criterion of a law is −2 log p plus this penalty.
+//! X are the whitened sensitivities and P is the prior precision. The penalty of a colour is log n per parameter
+//! (Schwarz 1978); the criterion of a law is −2 log p plus this penalty. All structures share the law, so the misfit of
+//! a structure without an effect is never attributed to weather.
 
 use estimation::levenberg_marquardt::NormalEquations;
 use estimation::minimum::golden_section_minimum;
@@ -29,7 +30,7 @@ const BEND_SHARE: f64 = 0.05;
 /// Bounds of the level of a colour: its heading variance over the variance of a row.
 const LEVELS: [f64; 2] = [1e-2, 1e9];
 
-/// Number of points of the search grid of the level.
+/// Number of intervals of the search grid of the level.
 const GRID: usize = 6;
 
 /// Number of levels at which every kind of colour is screened.
@@ -43,8 +44,9 @@ const ROUNDS: usize = 2;
 
 /// Lower bounds of the noise variance of the records, rad², from the sampling of the rudder.
 ///
-/// A corner of the rudder between two rows is cut, which changes the integral of the rudder by up to an eighth of its
-/// second difference times the step, and the heading by about that times (K/T)(L/U). `gain` is K/T, 1/s².
+/// A corner of the rudder between two rows is cut. This changes the integral of the rudder by up to an eighth of its
+/// second difference times the step; the bound assumes half of this maximum. The heading changes by about
+/// (K/T)(L/U) times as much. `gain` is K/T, 1/s².
 pub fn min_noise_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
     let floor = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
@@ -170,7 +172,8 @@ impl<'a> LinearisedFit<'a> {
         criterion.is_finite().then_some((variances, criterion))
     }
 
-    /// Some kinds of colour at their best levels: all are screened on a grid, the best few are refined.
+    /// Best of the given kinds of colour, each at its best level: all kinds are screened on a coarse grid of levels,
+    /// then the levels of the best kinds are refined.
     fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<EstimatedNoiseLaw> {
         let at = |kind: CorrelatedNoise, log: f64| {
             let colour = NoiseColour { correlated: Some((kind, log.exp())), ..white.colour };

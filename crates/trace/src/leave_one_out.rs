@@ -10,26 +10,27 @@ use crate::average::AveragedModel;
 use crate::base::FittedBase;
 use crate::comparison::RecordComparison;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
+use crate::fold_observer::FoldObserver;
 use crate::full::FullModel;
 use crate::hulls;
 use crate::model::Structure;
 use crate::structures::{Structures, WeighedStructure};
-use crate::watcher::Watcher;
 use crate::weights::NoiseLaw;
 
 /// Maximum number of structures that are refitted.
 const MAX_STRUCTURES: usize = 4;
 
-/// Comparisons on every record by the fold without it, `None` for a fold without a finite replay; empty if stopped.
+/// Comparison on every record by the fold without it, `None` for a fold without a base or a finite replay; empty if
+/// stopped.
 pub fn leave_one_out(
     trials: &[Trial],
     problem: &FittedRecords,
     full: &FullModel,
     structures: &Structures,
     hulls: &[HullEstimate],
-    watcher: &dyn Watcher,
+    observer: &dyn FoldObserver,
 ) -> Vec<Option<RecordComparison>> {
-    watcher.begin_folds(trials.len());
+    observer.begin_folds(trials.len());
     let fold = |omitted: usize| -> Option<RecordComparison> {
         let base = FittedBase::fit(&without(trials, omitted)).ok()?;
         let kept =
@@ -58,8 +59,8 @@ pub fn leave_one_out(
         averaged.compare(&trials[omitted], &base.estimate.response, true).ok()
     };
     let watched = |omitted: usize| {
-        let comparison = (!watcher.is_asked_to_stop()).then(|| fold(omitted));
-        watcher.end_fold();
+        let comparison = (!observer.should_stop()).then(|| fold(omitted));
+        observer.end_fold();
         comparison
     };
     let all: Option<Vec<_>> = (0..trials.len()).into_par_iter().map(watched).collect();

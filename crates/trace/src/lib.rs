@@ -11,6 +11,7 @@ pub mod candidates;
 pub mod comparison;
 pub mod empirical;
 pub mod fit;
+mod fold_observer;
 pub mod full;
 mod hulls;
 pub mod law;
@@ -37,16 +38,15 @@ pub mod shape;
 pub mod staircase;
 pub mod structures;
 pub mod transient;
-mod watcher;
 pub mod waves;
 pub mod weights;
 
-pub use analysis::{Analysis, trace, trace_with_watcher, without_spikes};
+pub use analysis::{Analysis, trace, trace_with_observer, without_spikes};
 pub use document::trace::{Document, Verdict};
+pub use fold_observer::FoldObserver;
 pub use residual_analysis::{Innovations, SIGNIFICANCE_LEVEL};
 pub use selection::{EffectId, Selection};
 pub use settings::{Settings, TraceError, WeightingRule};
-pub use watcher::Watcher;
 
 #[cfg(test)]
 mod analysis_tests;

@@ -16,13 +16,13 @@ use crate::weights::RecordWhitening;
 pub struct HeadingSensitivities {
     /// Residual (measured minus replayed heading), rad.
     pub residual: Vec<f64>,
-    /// Unknowns that act in the record, each with the derivative of the heading.
+    /// Index of every unknown that acts in the record, with the derivative of the heading with respect to it.
     pub columns: Vec<(usize, Vec<f64>)>,
 }
 
 impl HeadingSensitivities {
-    /// Residual and columns whitened to unit variance.
-    pub fn white(&self, record: usize, weights: &RecordWhitening) -> Self {
+    /// Residual and columns after whitening under `weights`.
+    pub fn whitened(&self, record: usize, weights: &RecordWhitening) -> Self {
         let mut white = self.clone();
         let mut all: Vec<&mut Vec<f64>> = white.columns.iter_mut().map(|(_, column)| column).collect();
         all.push(&mut white.residual);
@@ -36,8 +36,8 @@ impl HeadingSensitivities {
     }
 }
 
-/// Replays one record with forward derivatives (Griewank and Walther 2008) by some variables, each given as its unknown
-/// and its index in (θ, initial state).
+/// Heading residual of record `number` and its sensitivities, from replays with forward derivatives (Griewank and
+/// Walther 2008). A variable is given by the index of its unknown and its index in (θ, initial state).
 pub fn heading_sensitivities(
     structure: &Structure,
     record: &PreparedRecord,
@@ -78,11 +78,11 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    /// Normal equations under weights, and |e|² of every record.
+    /// Normal equations under weights, and the sum of squared whitened residuals of every record.
     pub fn normal_equations(&self, weights: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let (mut normal, mut squares) = (NormalEquations::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
-            let HeadingSensitivities { residual, columns } = block.white(record, weights);
+            let HeadingSensitivities { residual, columns } = block.whitened(record, weights);
             for (k, (i, column)) in columns.iter().enumerate() {
                 for (j, other) in &columns[..=k] {
                     let product = dot(column, other);

@@ -31,7 +31,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// Random moment in addition to named effects and shapes; `None` if the rudder noise explains it.
+    /// Random moment in addition to named effects and shapes; `None` without one, or if the rudder noise explains it.
     pub fn unexplained_random_moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
@@ -147,7 +147,8 @@ impl NamedStructures<'_> {
         is_gain && self.p_value(effect.term).is_none_or(|p_value| p_value < MAX_P_VALUE)
     }
 
-    /// p value (χ²) of the coefficients of a term in the most probable structure that has it.
+    /// p value (χ²) of the coefficients of a term in the most probable structure that has it; `None` without such a
+    /// structure, without a fitted coefficient, or if the covariance is singular.
     fn p_value(&self, name: TermName) -> Option<f64> {
         let with = |fit: &StructureFit| fit.structure.terms.iter().position(|term| term.name() == name);
         let (fit, place) = self.structures.all.iter().find_map(|weighed| Some((&weighed.fit, with(&weighed.fit)?)))?;

@@ -16,8 +16,8 @@ use crate::model::{Structure, TermName};
 impl Analysis {
     /// Missing yaw moment of the base on every fitted record; `None` for a record with too few headings.
     ///
-    /// The explanations are the structure average, if it has terms, then every candidate alone on the base, the most
-    /// probable first.
+    /// The explanations are the structure average, if its most probable structure has terms, then every candidate
+    /// without an instant, fitted alone with the base, the most probable first.
     pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
         let structure = Structure::base(self.problem.records.len(), self.problem.time);
         let weights = self.problem.weights(&self.full.law);

@@ -22,10 +22,10 @@ const MAX_STEPS_PER_ROW: f64 = 8.0;
 /// Prior standard deviation of the rudder bias, rad.
 const BIAS_SD: f64 = 0.06;
 
-/// Prior standard deviation of the departure of one record from the rudder bias, rad.
+/// Prior standard deviation of the deviation of the rudder bias in one record, rad.
 const RECORD_BIAS_SD: f64 = 0.01;
 
-/// Prior standard deviations of 1/T and K/T in units of U/L and U²/L²; the values of ships are well within.
+/// Prior standard deviations of 1/T and K/T in units of U/L and U²/L²; usual values of ships are smaller.
 const BASE_SD: [f64; 2] = [3.0, 6.0];
 
 /// Candidate term: an effect in one form with priors for these records.
@@ -256,7 +256,8 @@ impl Structure {
     }
 }
 
-/// Solver step (s) between two times, for rows `spacing` seconds apart and `steps` per minimum time constant.
+/// Maximum solver step (s) between two times (s), for rows `spacing` seconds apart and `steps` steps per minimum time
+/// constant.
 pub fn solver_step<R: Real, S: Replayable<R> + ?Sized>(
     ship: &S,
     spacing: f64,
@@ -269,7 +270,8 @@ pub fn solver_step<R: Real, S: Replayable<R> + ?Sized>(
 /// Solver steps per minimum time constant in a fit: the heading is then exact to 10⁻⁴ of the response.
 const STEPS: f64 = 2.0;
 
-/// Replays a response along a record from its first row and calls `visit` with every observed row and its heading.
+/// Replays a response along a record from its first row. Calls `visit` with the index of every observed row among the
+/// observed rows, and with its heading, rad.
 pub fn replay_headings<R: EffectReal>(
     response: &Response<R>,
     record: &PreparedRecord,

@@ -4,13 +4,14 @@ use crate::model::TermName;
 use crate::selection::Selection;
 use crate::structures::Structures;
 
-/// Minimum probability of a member of a group, and of an alternative form.
+/// Minimum probability of a member of a group and of an alternative form; also the minimum increase of the probability
+/// of a group by a further member.
 const MIN_PROBABILITY: f64 = 0.05;
 
 /// Maximum number of effects in a group.
 const MAX_GROUP_SIZE: usize = 3;
 
-/// Ratio of the allowed 1 − probability, group over single effect: a group is more often right by chance.
+/// Maximum of 1 − probability for a group, relative to that for a single effect: a group is more often right by chance.
 const GROUP_DOUBT_RATIO: f64 = 0.6;
 
 /// Named effect, or group of effects that the records cannot separate, with its probability.
@@ -71,7 +72,8 @@ fn named_effect(structures: &Structures, (id, record): EffectKey, probability: f
     EffectNaming { term: forms[0].0, aliases: Vec::new(), forms: alternatives, probability }
 }
 
-/// Smallest group of effects whose joint probability suffices, the most probable effect first; `None` if there is none.
+/// Group of effects whose joint probability suffices, by forward selection from the most probable effect; `None` if no
+/// group of at most [`MAX_GROUP_SIZE`] effects is found.
 fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
     let union = |group: &[EffectKey]| structures.inclusion_probability(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];

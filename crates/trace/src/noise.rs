@@ -40,7 +40,7 @@ pub enum CorrelatedNoise {
 }
 
 /// Maximum relative change of a stationary Kalman gain. The choice of structures near a tie can depend on the last
-/// digits; the published traces used this value.
+/// digits, so this value reproduces published traces.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// Correlation times of gusts, as shares of the longest record.
@@ -95,7 +95,8 @@ impl CorrelatedNoise {
         }
     }
 
-    /// Spectral density of w for level 1; gusts equal a white moment at low frequency.
+    /// Spectral density of w for level 1, with a longest record of `longest` seconds; the density of gusts at low
+    /// frequency is that of a white moment.
     pub fn intensity(self, longest: f64) -> f64 {
         let white = 3.0 / longest.powi(3);
         match self {
@@ -108,9 +109,9 @@ impl CorrelatedNoise {
         }
     }
 
-    /// Size for a level (rad² of heading): for a white moment the root of the spectral density of its yaw acceleration,
-    /// rad/s² √s; for gusts the standard deviation, rad/s²; for a walk the standard deviation of its change in one
-    /// second; for an error of the heading the standard deviation, rad.
+    /// Size for a level ([`NoiseColour::correlated`]): for a white moment the root of the spectral density of its yaw
+    /// acceleration, rad/s² √s; for gusts and a smooth moment the standard deviation, rad/s²; for a walk the standard
+    /// deviation of its change in one second, rad/s²; for an error of the heading the standard deviation, rad.
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
         match (self, self.correlation_time(longest)) {
@@ -142,10 +143,11 @@ impl CorrelatedNoise {
 /// Coloured part of the noise, in units of the variance of the white heading noise.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NoiseColour {
-    /// Correlated noise and its level, a heading variance: for a random moment at the end of the longest record for a
-    /// ship without damping.
+    /// Correlated noise and its level; `None` without correlated noise. The level of an error of the heading is its
+    /// variance. That of a random moment is the heading variance at the end of the longest record for a ship without
+    /// damping, for gusts as if they were white. That of a smooth moment is the variance of its yaw acceleration.
     pub correlated: Option<(CorrelatedNoise, f64)>,
-    /// Waves; `sd` in units of the white noise.
+    /// Waves with `sd` in units of the white noise; `None` without waves.
     pub waves: Option<NarrowBand>,
 }
 
@@ -158,7 +160,8 @@ impl NoiseColour {
         self.correlated.map_or(0, |(kind, _)| kind.parameter_count()) + if self.waves.is_some() { 3 } else { 0 }
     }
 
-    /// Random moment of a record with white noise of this variance (rad²), as rudder angle for |K/T| = `gain` (1/s²).
+    /// Random moment of a record with white noise of this variance (rad²), as rudder angle for |K/T| = `gain` (1/s²)
+    /// and a longest record of `longest` seconds.
     pub fn moment(&self, variance: f64, longest: f64, gain: f64) -> RandomMoment {
         let Some((kind, level)) = self.correlated else { return RandomMoment::None };
         let size = kind.size(level * variance, longest) / gain;
@@ -223,7 +226,7 @@ pub struct RecordNoise {
 
 impl RecordNoise {
     /// Prepares the observed rows of a record for a ship of this 1/T (1/s); `longest` is the duration of the longest
-    /// record (s), and a full row is the mean of `full_readings`.
+    /// record (s), and a full row is the mean of `full_readings` readings.
     pub fn new(record: &PreparedRecord, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
         let time = |number: usize| record.time[record.observed[number]];
         let durations = (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();

@@ -39,9 +39,11 @@ pub struct Prospect {
 }
 
 impl Analysis {
-    /// Values of planned trials, given the fitted records, the best first.
+    /// Values of planned trials, given the fitted records, the best first. A trial with a singular precision is left
+    /// out.
     ///
-    /// A planned trial is a simulated record of the fitted ship; only rudder and times are used.
+    /// A planned trial is a simulated record of the fitted ship. Of its headings only the first value and the times are
+    /// used.
     pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
         let mut prospects: Vec<Prospect> =
             planned.par_iter().filter_map(|(name, trial)| self.prospect(name, trial)).collect();
@@ -97,7 +99,8 @@ impl Analysis {
     }
 }
 
-/// Inverse of a precision with a small ridge, which keeps the variance of an undetermined unknown finite.
+/// Inverse of a precision with a small ridge, which keeps the variance of an undetermined unknown finite; `None` if the
+/// precision is singular.
 fn regular(mut precision: DMatrix<f64>) -> Option<DMatrix<f64>> {
     for k in 0..precision.nrows() {
         precision[(k, k)] += 1e-12 * precision[(k, k)] + f64::MIN_POSITIVE;

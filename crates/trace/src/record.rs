@@ -3,7 +3,7 @@
 //! Averaging the same rows of all channels keeps the relation between rudder and heading, because a linear filter
 //! commutes with a linear response. Rows are averaged only if headings are far denser than the response, and only for
 //! the search; reported errors use all rows. A single heading among several rows of the rudder is not averaged, and the
-//! rudder there keeps its resolution. Every row stores the number of its readings and has their mean time.
+//! rudder there keeps a finer resolution. Every row stores the number of its readings and has their mean time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,7 +14,7 @@ use trial::{Channel, Trial};
 /// Minimum number of rows after averaging.
 const MIN_ROWS: usize = 300;
 
-/// Minimum number of rows per time constant after averaging.
+/// Minimum number of rows after averaging per ship time L/U, or per tenth of the record if that is shorter.
 const MIN_ROWS_PER_TIME: f64 = 10.0;
 
 /// Maximum number of rows after averaging.
@@ -48,15 +48,16 @@ pub struct PreparedRecord {
     pub rudder_spacing: f64,
     /// Rudder angle, rad.
     pub rudder: Polyline,
-    /// Speed, m/s.
+    /// Speed, m/s, measured or computed from surge and sway velocity; `None` if fewer than half of the rows have it.
     pub speed: Option<Polyline>,
-    /// Sway velocity, m/s.
+    /// Sway velocity, m/s; `None` if fewer than half of the rows have it.
     pub sway: Option<Polyline>,
-    /// Relative wind speed, m/s, measured or computed from the true wind; `None` without its direction.
+    /// Relative wind speed, m/s, measured or computed from the true wind; `None` unless at least half of the rows have
+    /// speed and direction.
     pub wind_speed: Option<Polyline>,
-    /// Direction from which the relative wind comes, rad from the bow; `None` without its speed.
+    /// Direction from which the relative wind comes, rad from the bow, unwrapped; `None` as for the wind speed.
     pub wind_from: Option<Polyline>,
-    /// Propeller revolutions, 1/s.
+    /// Propeller revolutions, 1/s; `None` if fewer than half of the rows have them.
     pub propeller: Option<Polyline>,
 }
 
@@ -169,7 +170,7 @@ fn groups(time: &[f64], group: usize, gap: f64) -> Vec<(usize, usize)> {
     groups
 }
 
-/// Mean of the finite values; NaN if fewer than half are finite.
+/// Mean of the finite values; NaN unless more than half are finite.
 fn mean(values: &[f64]) -> f64 {
     let (sum, count) = values.iter().filter(|x| x.is_finite()).fold((0.0, 0usize), |(sum, n), x| (sum + x, n + 1));
     if 2 * count > values.len() { sum / count as f64 } else { f64::NAN }

@@ -25,7 +25,7 @@ const MIN_DECREASE: f64 = 0.01;
 /// Reduction factor of a step that does not reduce the error.
 const STEP_FACTOR: f64 = 0.4;
 
-/// Minimum relative singular value of an observable combination of responses.
+/// Minimum singular value of an observable combination of responses, each normalised to unit length.
 const MIN_SINGULAR_VALUE: f64 = 1e-10;
 
 /// Least squares of a residual on the heading responses of the base to initial state and moment.
@@ -37,7 +37,7 @@ struct MomentRegression {
 }
 
 impl MomentRegression {
-    /// `None` if there are no more rows than columns, or a column is not finite.
+    /// Regression on these columns; `None` unless there are more rows than columns, all finite and nonzero.
     fn new(columns: DMatrix<f64>) -> Option<Self> {
         let scale = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm()));
         let is_sound = columns.nrows() > columns.ncols() && scale.iter().all(|size| size.is_normal());
@@ -82,7 +82,8 @@ impl<'a> RecordMoment<'a> {
         MomentErrors { bias, slow: slow.min(bias) }
     }
 
-    /// Errors of an average with a moment; `plain` is its replay without one, kept if its ships diverge.
+    /// Errors of an average with a moment. `plain` is its replay without one, which is kept if the replays of the
+    /// members with a moment diverge.
     pub fn average_errors(&self, average: &ModelAverage, plain: &Replay) -> MomentErrors {
         let mut record = self.record.clone();
         let (mut best, mut error, mut moment) = (plain.clone(), plain.rms(), [0.0; KNOTS]);

@@ -56,7 +56,7 @@ pub struct MomentErrors {
 pub struct WindowError {
     /// Duration of the windows, s.
     pub duration: f64,
-    /// Root mean square heading error, rad; `None` if a window holds too few headings.
+    /// Root mean square heading error, rad; `None` if a window holds too few headings or has no finite replay.
     pub heading: Option<f64>,
 }
 
@@ -67,9 +67,11 @@ pub struct ReplayErrors {
     pub heading: f64,
     /// Number of headings compared.
     pub rows: usize,
-    /// Root mean square yaw-rate error of the full replay, rad/s, if the record has a yaw rate.
+    /// Root mean square yaw-rate error of the full replay, rad/s; `None` without a measured yaw rate, and at
+    /// [`ReplayDepth::Heading`].
     pub yaw_rate: Option<f64>,
-    /// Mean absolute error of the overshoot angles, rad, if record and replay are zig-zags.
+    /// Mean absolute error of the overshoot angles, rad; `None` unless record and replay are zig-zags, and at
+    /// [`ReplayDepth::Heading`].
     pub overshoot: Option<f64>,
     /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
@@ -79,7 +81,7 @@ pub struct ReplayErrors {
 }
 
 impl ReplayErrors {
-    /// Root mean square heading error of replays restarted every `duration` seconds, rad.
+    /// Root mean square heading error of replays restarted every `duration` seconds, rad; `None` without such replays.
     pub fn restarted_rms(&self, duration: f64) -> Option<f64> {
         self.windows.iter().find(|window| window.duration == duration)?.heading
     }
@@ -165,7 +167,8 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     ZigZag::from_trial(&twin).ok()
 }
 
-/// Mean absolute error of the overshoot angles of a replay, rad; `None` unless record and replay are zig-zags.
+/// Mean absolute error of the overshoot angles of a replay, rad; `None` unless record and replay are zig-zags with a
+/// common overshoot.
 pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::from_trial(trial).ok()?, replayed_zigzag(trial, replayed)?);
     // Record and replay have the executes of the recorded rudder; a peak may be missing in one of them.
@@ -184,7 +187,7 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 }
 
 /// Headings (rad) of a replay restarted every `duration` seconds from the best initial heading and yaw rate of each
-/// window; other states continue. `None` if a window holds too few headings.
+/// window; other states continue. `None` if a window holds too few headings or has no finite replay.
 pub fn restarted_headings(
     ship: &dyn ReplayedShip,
     record: &PreparedRecord,

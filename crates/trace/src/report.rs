@@ -49,7 +49,7 @@ pub struct TraceParts<'a> {
     pub identification: &'a [RecordComparison],
     /// Held-out records with their comparisons.
     pub validation: (&'a [Trial], &'a [RecordComparison]),
-    /// Leave-one-out comparisons.
+    /// Leave-one-out comparison of every fitted record; `None` for a fold without a base or a finite replay.
     pub leave_one_out: &'a [Option<RecordComparison>],
     /// Residual analysis.
     pub residual_analysis: &'a ResidualAnalysis,
@@ -57,11 +57,11 @@ pub struct TraceParts<'a> {
     pub location: &'a Location,
     /// Times of the removed compass outliers of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
-    /// Measurement errors of the rudders of the fitted records.
+    /// Measurement error of the rudder of every fitted record; `None` without one.
     pub rudder_noises: &'a [Option<RudderNoise>],
     /// `true` if the replay of the base is kept on the fitted records.
     pub keeps_base: bool,
-    /// `true` if fitted hulls take part in the replays after.
+    /// `true` if the reported replays of the average include fitted hulls.
     pub has_hulls: bool,
     /// Prepared records.
     pub problem: &'a FittedRecords,
@@ -146,7 +146,7 @@ impl TraceParts<'_> {
         }
     }
 
-    /// Text on the fitted records whose bands miss their nominal coverage.
+    /// Text on the fitted records whose bands have less than their nominal coverage; empty without such records.
     fn bands(&self) -> String {
         let records = self.trials.iter().zip(self.identification);
         let bands = records.filter_map(|(trial, comparison)| Some((trial, comparison.after.coverage()?)));

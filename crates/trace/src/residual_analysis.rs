@@ -34,7 +34,7 @@ pub struct Innovations {
 }
 
 impl Innovations {
-    /// Series on an even clock, with gaps.
+    /// Series on an even time grid, with gaps.
     pub fn series(&self) -> GappedSeries {
         GappedSeries::new(&self.time, &self.values, self.spacing)
     }
@@ -45,12 +45,13 @@ impl Innovations {
 pub struct ResidualAnalysis {
     /// `true` if the noise law describes the residual and its bands cover the records.
     pub is_noise: bool,
-    /// `true` if the noise law describes the residual, or the structures replay better than the base; otherwise
-    /// probabilities are not reported.
+    /// `true` if [`is_noise`](Self::is_noise), or if the structures replay better than the base; otherwise no effect is
+    /// named that was not required.
     pub is_credible: bool,
-    /// `true` if the residual is neither random nor of a searched shape.
+    /// `true` if a large residual is neither random nor of a searched shape, or if a random moment acts in a declared
+    /// calm.
     pub is_unexplained: bool,
-    /// Peak of a residual that is more than noise; `None` for noise.
+    /// Peak of a residual that is unexplained, of a located shape, or large and more than noise; `None` otherwise.
     pub residual_peak: Option<ResidualPeak>,
 }
 

@@ -9,9 +9,10 @@ pub struct ResidualPeak {
     pub record_index: usize,
     /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
-    /// Strongest line of the spectrum; `None` if there is none.
+    /// Strongest line of the spectrum; `None` for fewer than four headings, or if nearly all of the record is gaps.
     pub line: Option<SpectralLine>,
-    /// Quarter of the headings (rad) with the largest root mean square, and its value, rad.
+    /// Heading range (rad) of the quarter of the rows, sorted by heading, with the largest root mean square, and this
+    /// root mean square, rad.
     pub heading: ([f64; 2], f64),
     /// Root mean square with the rudder to port and to starboard, rad.
     pub side_rms: [f64; 2],
@@ -19,10 +20,10 @@ pub struct ResidualPeak {
     pub rms: f64,
 }
 
-/// Number of windows per record.
+/// Number of rows of a record over the number of rows of a window.
 const WINDOWS_PER_RECORD: usize = 8;
 
-/// Number of bands of headings.
+/// Number of bands of headings, with equally many rows each.
 const HEADING_BANDS: usize = 4;
 
 /// Peak of the residual (rad) of one record: time (s), residual, heading and rudder (rad) by row, `spacing` in s.

@@ -3,9 +3,9 @@
 //! δ_i = δ(t_i) + ν_i, ν white with standard deviation s, rad. This is an errors-in-variables problem: an effect that
 //! is flat at large or small angles removes the noise and seems to explain it. A steering gear moves the rudder in
 //! rests and strokes of one rate, which many readings determine far better than one reading ([`pieces`]), so the
-//! recorded rudder is replaced by rests and strokes. The remaining error, ∫ν dt over a stroke with the variance (s h)²
-//! per row of length h, acts on the ship as a white yaw moment of intensity K²/T² times [`RudderNoise::intensity`], a
-//! lower bound of the noise law.
+//! recorded rudder is replaced by rests and strokes. The integrated error ∫ν dt, with the variance (s h)² per row of
+//! duration h, acts on the ship as a white yaw moment of intensity K²/T² times [`RudderNoise::intensity`]. This moment
+//! is a lower bound of the noise law.
 //!
 //! s is first 1.4826 median |δ_(i−1) − 2 δ_i + δ_(i+1)|/√6, which is robust to a few corners, then the standard
 //! deviation of the readings about the pieces. Angles rounded to q have the error variance q²/12; the part that the
@@ -81,7 +81,8 @@ pub fn estimate_rudders(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Option<Rudde
     (kept, errors)
 }
 
-/// Record with the estimated true rudder, and its measurement error; `None` if the readings are treated as exact.
+/// Record with the estimated true rudder, and its measurement error; `None` if the readings are treated as exact. A
+/// rounded rudder that explains the heading better than the estimate is kept, with its error.
 fn smoothed(trial: &Trial) -> Option<(Trial, RudderNoise)> {
     let (time, angle) = (trial.time(), trial.rudder());
     let quantum = quantum(angle);
@@ -114,8 +115,8 @@ fn roughness(time: &[f64], angle: &[f64]) -> f64 {
     median(&mut bends).map_or(0.0, |bend| SD_PER_MEDIAN * bend / 6f64.sqrt())
 }
 
-/// Rounding unit of the angles, rad; 0 if there is no common divisor, or if every stroke begins with a full step at a
-/// row, as in an exact record of round numbers.
+/// Rounding unit of the angles, rad; 0 without a common divisor of at most [`MAX_ROUNDING_DEG`], or if every stroke
+/// begins with a full step at a row, as in an exact record of round numbers.
 fn quantum(angle: &[f64]) -> f64 {
     let units: Vec<f64> = angle.iter().map(|angle| to_deg(*angle) / UNIT_DEG).collect();
     if units.iter().any(|unit| (unit - unit.round()).abs() > 1e-3) {
@@ -140,7 +141,7 @@ fn is_correlated(residual: &[f64]) -> bool {
     (1..=LAGS).any(|lag| products(lag).abs() > MAX_AUTOCORRELATION.max(chance) * products(0))
 }
 
-/// Error of readings about the estimated rudder `path`; `None` if it is a correlated motion and not noise.
+/// Error of readings about the estimated rudder `path`; `None` if it is zero, or a correlated motion and not noise.
 fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], rounding: f64) -> Option<RudderNoise> {
     let residual: Vec<f64> = angle.iter().zip(path).map(|(angle, path)| angle - path).collect();
     if rounding == 0.0 && is_correlated(&residual) {
@@ -165,7 +166,8 @@ fn error_of(time: &[f64], angle: &[f64], path: &[f64], pieces: &[RudderPiece], r
     (growth > 0.0).then_some(error)
 }
 
-/// Maximised log likelihood of a record with a random moment; `None` if the method fails.
+/// Maximised log likelihood of a record with an exact rudder, under the random moment of the lowest BIC; `None` if the
+/// method fails.
 fn log_likelihood(trial: &Trial) -> Option<f64> {
     let settings = maximum_likelihood::Settings {
         rudder: maximum_likelihood::RudderChoice::None,
@@ -202,7 +204,7 @@ pub fn with_rudder_noise(
         let white = estimate(CorrelatedNoise::White);
         let kind = full.law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::White);
         let is_other = kind.is_some_and(|kind| estimate(kind).criterion + MIN_CRITERION_DECREASE < white.criterion);
-        // The size of waves is relative to the white noise.
+        // The size of waves is relative to the white noise, so a law with waves keeps its variances.
         let mut law = if full.law.colour.waves.is_some() { full.law.clone() } else { white.law };
         let level = law.colour.correlated.filter(|(kind, _)| *kind == CorrelatedNoise::White).map_or(0.0, |(_, x)| x);
         law.colour.correlated = Some((CorrelatedNoise::White, level.max(least(&law))));

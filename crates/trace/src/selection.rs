@@ -10,7 +10,7 @@ use ship::effects::{self, Effect, Formula};
 pub struct EffectId(&'static str);
 
 impl EffectId {
-    /// Listed effect of this name; `None` if there is none.
+    /// Listed effect of this name; `None` for any other name.
     pub fn find(name: &str) -> Option<Self> {
         effects::all().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
     }
@@ -83,7 +83,7 @@ impl Selection {
         self.formulas.iter().find(|formula| formula.id() == name).map(Arc::as_ref)
     }
 
-    /// Listed effect or formula of this name; `None` if there is none.
+    /// Listed effect or formula of this name; `None` for any other name.
     pub fn find(&self, name: &str) -> Option<EffectId> {
         EffectId::find(name).or_else(|| self.formula(name).map(EffectId::from_formula))
     }

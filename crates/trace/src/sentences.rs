@@ -58,7 +58,7 @@ fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) ->
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
 }
 
-/// "27 %": ratio of the error after to the error before; `None` if it is not finite.
+/// Ratio of the error after to the error before, such as "27 %"; `None` without errors, or if it is not finite.
 fn percent(errors: Option<[f64; 2]>) -> Option<String> {
     let ratio = errors.map(|[before, after]| after / before).filter(|ratio| ratio.is_finite())?;
     Some(format!("{:.0} %", 100.0 * ratio))
@@ -70,13 +70,13 @@ pub struct Headline<'a> {
     pub verdict: Verdict,
     /// Named effects.
     pub effects: &'a [EffectEntry],
-    /// Errors before and after.
+    /// Replay errors of base and average.
     pub error: &'a ErrorEntry,
-    /// Random moment in addition to the named effects.
+    /// Random moment in addition to the named effects; `None` without one.
     pub disturbance: Option<DisturbanceEntry>,
     /// Located shapes.
     pub located: &'a [LocatedEntry],
-    /// `true` if fitted hulls take part in the replays after.
+    /// `true` if the reported replays of the average include fitted hulls.
     pub has_hulls: bool,
 }
 
@@ -142,7 +142,7 @@ impl Headline<'_> {
         format!("{condition}{hulls} the heading error is {after}° instead of {before}°{replays}.{windows}")
     }
 
-    /// Sentence on effects that improve one-step predictions but not the full replay; empty without them.
+    /// Sentence on effects that improve one-step predictions but hardly the full replay; empty if it improves as well.
     fn one_step(&self) -> String {
         let errors = mean_errors(&self.error.identification, whole);
         if errors.is_none_or(|[before, after]| after <= UNCHANGED_SHARE * before) {

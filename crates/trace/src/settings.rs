@@ -41,15 +41,17 @@ pub struct Settings {
     pub rule: WeightingRule,
     /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all`]).
     pub monomials: usize,
-    /// Required and excluded effects.
+    /// Required and excluded effects, and effects given as formulas.
     pub selection: Selection,
-    /// `true` if errors of restarted replays, bands and leave-one-out folds are computed; a benchmark can skip them.
+    /// `true` if all errors are computed: restarted replays, yaw rate and overshoots on fitted records, horizons and
+    /// fitted moments on held-out records, and leave-one-out folds. A benchmark can skip them.
     pub is_thorough: bool,
     /// `true` if only heading, yaw rate and rudder are used, as in methods without other channels.
     pub uses_heading_alone: bool,
-    /// `true` if hull models of three degrees of freedom are fitted if the residual is more than noise.
+    /// `true` if hull models of three degrees of freedom are fitted when the residual is more than noise, or when there
+    /// are `earlier` hulls.
     pub fits_hulls: bool,
-    /// Hulls from earlier trials of the ship or a similar one, used as priors.
+    /// Hulls from earlier trials of the ship or a similar one, used as priors of the hull models.
     pub earlier: Vec<EarlierHull>,
 }
 

@@ -1,8 +1,8 @@
 //! Stepwise replay errors from the base to the most probable structure, one effect per step, by backward elimination
 //! (Draper and Smith 1998).
 //!
-//! Every step is refitted under white noise for the nearest replay. The term of least loss is removed first, so the
-//! last step adds the least important effect.
+//! Every step is refitted under white noise, which gives the replay with the least heading error. The term whose
+//! removal raises this error least is removed first, so the last step adds the least important effect.
 
 use rayon::prelude::*;
 
@@ -44,7 +44,7 @@ fn root_mean_square(fit: &StructureFit) -> f64 {
 }
 
 impl Analysis {
-    /// Steps to the most probable structure; `None` if it has no terms.
+    /// Steps to the most probable structure; `None` if it has no terms, or if an error is not finite.
     pub fn staircase(&self) -> Option<Staircase> {
         let problem = &self.problem;
         let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;

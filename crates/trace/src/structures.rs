@@ -26,7 +26,7 @@ pub use result::{Structures, WeighedStructure};
 /// Maximum number of structures whose fit is iterated to convergence.
 const MAX_CONVERGED: usize = 8;
 
-/// Start value of a delay that replaces another delay, in standard deviations of the prior.
+/// Minimum start value of a delay that replaces another delay, in standard deviations of the prior.
 const DELAY_START: f64 = 0.3;
 
 /// Number of rounds, each about the best structure of the round before.
@@ -142,7 +142,8 @@ fn weigh(
 }
 
 impl StructureSearch<'_> {
-    /// Weighs all subsets about a point of the full model and refits the best; `about` are the terms of that point.
+    /// Weighs all subsets about a point of the full model and refits the best; `about` is `true` for the terms that the
+    /// structure of this point has.
     fn screen(&mut self, theta: &[f64], initial: &[[f64; 2]], about: &[bool]) {
         let structure = &self.full.fit.structure;
         let normal = self.problem.normal_equations(structure, theta, initial, &self.weights);
@@ -198,7 +199,7 @@ impl StructureSearch<'_> {
         }
     }
 
-    /// Fits to convergence the first [`MAX_CONVERGED`] structures whose log posterior is within [`MAX_LOG_ODDS`] of the
+    /// Fits to convergence the best [`MAX_CONVERGED`] structures whose log posterior is within [`MAX_LOG_ODDS`] of the
     /// highest.
     fn converge(&mut self) {
         let highest = self.top().map_or(0.0, |top| top.log_posterior);
@@ -341,6 +342,6 @@ impl StructureSearch<'_> {
                 *probabilities.entry(term.name()).or_default() += weighed.weight;
             }
         }
-        Structures { all, probabilities, visibility, support, rivals: Vec::new() }
+        Structures { all, probabilities, visibility, support, other_law_structures: Vec::new() }
     }
 }

@@ -12,7 +12,7 @@ use ship::replay::{RecordedSignals, replay};
 use ship::{Polyline, Response, ResponseModel};
 use trial::{Channel, Columns, RecordOrigin, Trial};
 
-/// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg.
+/// 1/T (1/s), K/T (1/s²) and δ_r (rad) of a ship with K = 0.1 1/s, T = 16.3 s and δ_r = 0.5 deg.
 pub const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
 
 /// Base response with effects.
@@ -87,7 +87,8 @@ pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial 
     Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
 }
 
-/// Record plus the response of the base to a moment (rad of rudder) over time (s).
+/// Record with rows one second apart, its heading plus the response of the base to a moment (rad of rudder) over time
+/// (s).
 pub fn moved(trial: &Trial, moment: impl Fn(f64) -> f64) -> Trial {
     let [mut heading, mut rate, h] = [0.0, 0.0, 0.02];
     let mut measured = trial.heading().to_vec();

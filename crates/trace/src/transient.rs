@@ -1,5 +1,6 @@
-//! Start values of moments with an instant: boxes of several lengths, or steps, are tried at all times of a record by
-//! their closed-form response of the base, orthogonal to all unknowns of the full model (score test; Rao 1948).
+//! Start values of moments with an instant: boxes of several durations, or steps, are tried at all times of a record.
+//! Their closed-form heading response of the base is orthogonalised to all unknowns of the full model (score test; Rao
+//! 1948).
 
 use estimation::column::dot;
 use nalgebra::{Cholesky, DVector, Dyn};
@@ -16,8 +17,8 @@ const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0
 /// Spacing of the steps that are tried, as a share of the record.
 const STEP_SPACING: f64 = 1.0 / 80.0;
 
-/// Best start values of moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step;
-/// `None` if the precision of the fit is singular.
+/// Best start values of moments in addition to a fit: (m, t_c, d) of a transient moment and (m, t₀) of a step, m in rad
+/// of rudder and times in s; `None` if the precision of the fit is singular, or if the record is too short.
 pub fn start_values(
     problem: &FittedRecords,
     fit: &StructureFit,
@@ -43,7 +44,7 @@ fn place(
 ) -> Option<Vec<f64>> {
     let number = term.record_index.unwrap_or(0);
     let record = &problem.records[number];
-    let block = linear.blocks[number].white(number, weights);
+    let block = linear.blocks[number].whitened(number, weights);
     let (a, b) = (fit.theta[0], fit.theta[1]);
     let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let (start, duration) = (record.time[0], record.duration());

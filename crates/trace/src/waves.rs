@@ -24,8 +24,8 @@ const MIN_SHARE: f64 = 0.05;
 /// Standard deviations of the waves over that of the white noise that are tried.
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
-/// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, or
-/// if waves do not increase the likelihood.
+/// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, if
+/// waves do not increase the likelihood, or if they have the maximum damping or less than the minimum share.
 pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.

@@ -46,12 +46,12 @@ impl NoiseLaw {
 pub struct RecordWhitening {
     /// Whitening filters.
     pub whiteners: Vec<Whitener>,
-    /// Inverse standard deviation of the noise of a row, 1/rad.
+    /// Scale √(p/σ²) of every record, 1/rad, with the variance σ² of a full row and the power p of the likelihood.
     pub scale: Vec<f64>,
 }
 
 impl RecordWhitening {
-    /// Whitens columns of one record to unit variance.
+    /// Whitens columns of one record and multiplies them by its scale.
     pub fn apply(&self, record: usize, columns: &mut [&mut Vec<f64>]) {
         self.whiteners[record].apply(columns);
         let scale = self.scale[record];
@@ -64,7 +64,7 @@ impl RecordWhitening {
         column.iter_mut().for_each(|x| *x *= self.scale[record]);
     }
 
-    /// Misfit Σ |W e|²/σ² of a residual.
+    /// Misfit Σ p |W e|²/σ² of a residual.
     pub fn misfit(&self, residual: &[Vec<f64>]) -> f64 {
         let square = |(record, residual): (usize, &Vec<f64>)| {
             let mut white = residual.clone();

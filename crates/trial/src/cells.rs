@@ -19,7 +19,7 @@ pub enum Separator {
 }
 
 impl Separator {
-    /// All separators, the least likely by accident first.
+    /// All separators, the least likely to occur by chance first.
     pub const ALL: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blank];
 
     fn is(self, character: char) -> bool {
@@ -36,7 +36,7 @@ impl Separator {
         }
     }
 
-    /// Puts the byte ranges of the cells of `line` into `cells`, without blanks and quotes around them.
+    /// Replaces `cells` by the byte ranges of the cells of `line`, without the blanks and quotes around them.
     ///
     /// A cell in double quotes may contain the separator; a doubled quote inside stays doubled (see `unquoted`).
     pub fn split(self, line: &str, cells: &mut Vec<Range<usize>>) {
@@ -77,7 +77,8 @@ impl Separator {
     }
 }
 
-/// Length of the text before the quote that ends a quoted cell; doubled quotes do not end it.
+/// Length of the text before the quote that ends a quoted cell; doubled quotes do not end it. `None` for a quote that
+/// is never closed.
 fn closing_quote(text: &str) -> Option<usize> {
     let mut at = text.find('"')?;
     while text[at + 1..].starts_with('"') {
@@ -91,9 +92,10 @@ pub fn unquoted(cell: &str) -> String {
     cell.replace("\"\"", "\"")
 }
 
-/// Most plausible separator of a line: the highest `score` of its cells, the first in [`Separator::ALL`] on a tie.
+/// Most plausible separator of a line: the one with the highest `score` of its cells.
 ///
-/// If no cell scores, the first separator that occurs in the line.
+/// On a tie, the first in [`Separator::ALL`] that gives more than one cell. [`Separator::Blank`] for a line of one cell
+/// with a score of 0.
 pub fn detect_separator(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
     let mut ranges = Vec::new();
     let mut best = (0, 0, Separator::Blank);
@@ -123,7 +125,7 @@ pub enum CellContent {
 }
 
 impl CellContent {
-    /// Number in either notation.
+    /// Number in either notation; `None` for a missing value and for text.
     pub fn number(self) -> Option<f64> {
         match self {
             Self::Number(value) | Self::CommaNumber(value) => Some(value),
@@ -132,7 +134,8 @@ impl CellContent {
     }
 }
 
-/// Content of a cell; a decimal comma is accepted, for comma-separated cells in quotes only.
+/// Content of a cell. A decimal comma is accepted; among comma-separated cells such a cell stood in quotes, and three
+/// digits after its comma make it text, because they may be thousands.
 ///
 /// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
 /// displays it. Exponents may be written with `D` (Fortran).
@@ -152,7 +155,7 @@ pub fn parse_cell(text: &str, separator: Separator) -> CellContent {
         return CellContent::Text;
     }
     let has_comma = text.contains(',');
-    // With commas as separators this cell was in quotes: three digits after its comma may be thousands.
+    // With commas as separators this cell stood in quotes.
     let may_be_thousands = || separator == Separator::Comma && text.len() - text.find(',').unwrap_or(0) == 4;
     if has_comma && (text.contains('.') || may_be_thousands()) {
         return CellContent::Text;

@@ -15,7 +15,7 @@ pub enum Channel {
     RudderOrder,
     /// Yaw rate r, rad/s.
     YawRate,
-    /// Speed, m/s.
+    /// Speed through the water, or over ground if no other was recorded, m/s.
     Speed,
     /// Surge velocity, m/s, forward.
     Surge,
@@ -35,7 +35,7 @@ pub enum Channel {
     WindRelativeFrom,
     /// True wind speed, m/s.
     WindTrueSpeed,
-    /// Direction from which the true wind comes, rad.
+    /// Direction from which the true wind comes, clockwise from north, rad.
     WindTrueFrom,
 }
 
@@ -73,7 +73,7 @@ pub enum Unit {
 }
 
 /// Every unit in the order of its declaration: suffix of a column name, name in messages, factor to SI units and
-/// radians, and the notations of a table in small letters without blanks.
+/// radians, and its notations in tables, in lower case without blanks.
 pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
     (Unit::Second, "s", "seconds", 1.0, "s, sec, secs, second, seconds, sek"),
     (Unit::Millisecond, "ms", "milliseconds", 1e-3, "ms, msec"),
@@ -219,7 +219,7 @@ pub fn parse_column_name(name: &str) -> Option<(Channel, Unit)> {
     })
 }
 
-/// Unit of a time column (`t_s`, `t_ms`, `t_min`); `None` for any other name.
+/// Unit of a time column (`t_s`, `t_ms`, `t_us`, `t_min`); `None` for any other name.
 pub fn time_column_unit(name: &str) -> Option<Unit> {
     let name = name.trim().to_ascii_lowercase();
     let suffix = name.strip_prefix("t_")?;

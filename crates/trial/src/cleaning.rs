@@ -15,13 +15,14 @@ use crate::wording::{counted, rounded_to_thousandth};
 /// Minimum magnitude of an impossible rudder angle, rad.
 pub(crate) const MIN_IMPOSSIBLE_RUDDER_RAD: f64 = 1.6;
 
-/// Maximum of the possible rudder angles of a record, rad; above it the unit is wrong, not a single reading.
+/// Maximum magnitude of the other rudder angles of a record with impossible ones, rad. Beyond it the unit of the column
+/// is wrong, and not single readings.
 const MAX_RUDDER: f64 = 1.05;
 
 /// Maximum share of rows with an impossible rudder angle.
 pub(crate) const MAX_IMPOSSIBLE_SHARE: f64 = 0.1;
 
-/// Maximum repetition of a value, rows.
+/// Maximum period of the new values in a channel that repeats its values, rows.
 const MAX_HOLD_ROWS: usize = 100;
 
 /// Minimum number of changes that determine the rhythm of a channel.
@@ -33,17 +34,18 @@ const MIN_READ_SHARE: f64 = 0.8;
 /// Minimum share of changes in step with the rhythm of a channel.
 const MIN_IN_STEP_SHARE: f64 = 0.97;
 
-/// Maximum probability that separate movements share a rhythm by chance; a steady movement has a rhythm.
+/// Maximum probability that separate movements have the same phase by chance. Rounding gives every steady movement a
+/// rhythm, but not the same phase.
 const MAX_CHANCE: f64 = 2e-3;
 
 /// Minimum number of rows of a frozen heading.
 const MIN_FROZEN_ROWS: usize = 8;
 
-/// Minimum ratio of the rate at the end of a freeze to the 99th percentile of the rates.
+/// Minimum ratio of the rate of the heading at the end of a freeze to the 99th percentile of its rates.
 const MIN_THAW_RATIO: f64 = 3.0;
 
-/// Minimum change of heading on either side of a freeze, over an equal time, in steps of its digits. At a peak that
-/// the digits do not resolve the change is 8.
+/// Minimum change of heading on either side of a freeze, over as many readings, in steps of its digits. On either side
+/// of a peak that the digits do not resolve, the change is 8 steps.
 const MIN_TURN_STEPS: f64 = 20.0;
 
 /// Sentinels: numbers that loggers write for a missing reading, without their sign.
@@ -61,7 +63,7 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
         && last.is_none_or(|last| (value - last).abs() > MIN_SENTINEL_JUMP)
 }
 
-/// Cleans the columns and returns a warning of every change. Changed single readings are added to `rejected`.
+/// Cleans the columns and returns the warnings of all changes. Changed single readings are added to `rejected`.
 pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(written::below_360(columns));
@@ -79,7 +81,8 @@ pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) 
     warnings
 }
 
-/// Omits rows with an impossible rudder angle, if they are few.
+/// Omits rows with an impossible rudder angle and returns the warning. `None`, and no change, without such rows, with
+/// more than [`MAX_IMPOSSIBLE_SHARE`] of them, or if another angle exceeds [`MAX_RUDDER`].
 fn drop_impossible_rudder(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > MIN_IMPOSSIBLE_RUDDER_RAD).collect();
@@ -155,7 +158,7 @@ impl Rhythm {
         }
         let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
         let rhythm = |every: usize| {
-            // More changes than this rhythm allows are not counted.
+            // With more changes than this rhythm allows, the phases need not be counted.
             if MIN_IN_STEP_SHARE * changes.len() as f64 > values.len().div_ceil(every) as f64 {
                 return None;
             }
@@ -164,7 +167,7 @@ impl Rhythm {
             let (first, &most) = phases.iter().enumerate().max_by_key(|(_, count)| **count)?;
             let movements = 1 + changes.windows(2).filter(|pair| pair[1] - pair[0] > 3 * every).count();
             let accident = (every as f64).powi(1 - movements as i32);
-            // A channel with new values in nearly every such row has this rhythm without rests.
+            // With a new value in nearly every such row, no separate movements are needed to confirm the rhythm.
             let full = most as f64 > 0.8 * (values.len() / every) as f64 && most >= MIN_CHANGES;
             let keeps = most as f64 >= MIN_IN_STEP_SHARE * changes.len() as f64;
             // A channel of steps, such as an order, does not continue to change with the next new value.
@@ -180,7 +183,7 @@ impl Rhythm {
     }
 }
 
-/// Interpolates linearly between the values of two rows.
+/// Replaces the values between rows `from` and `to` by linear interpolation in time.
 pub(crate) fn interpolate_rows(time: &[f64], values: &mut [f64], from: usize, to: usize) {
     let slope = (values[to] - values[from]) / (time[to] - time[from]);
     for row in from + 1..to {
@@ -188,7 +191,8 @@ pub(crate) fn interpolate_rows(time: &[f64], values: &mut [f64], from: usize, to
     }
 }
 
-/// Interpolates between the new values of a rudder with repetitions in between.
+/// Interpolates between the new values of a rudder that repeats its values and returns the warning. `None`, and no
+/// change, without a rhythm.
 fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;
@@ -203,7 +207,8 @@ fn straighten_rudder(columns: &mut Columns) -> Option<Warning> {
     )))
 }
 
-/// Sets the repetitions of a channel to missing.
+/// Sets the repetitions of a channel to missing and returns the warning. `None`, and no change, without a rhythm or if
+/// too few rows would remain.
 fn blank_repeats(columns: &mut Columns, channel: Channel) -> Option<Warning> {
     let values = columns.channels.get_mut(&channel)?;
     let rhythm = Rhythm::from_values(values)?;
@@ -234,8 +239,8 @@ fn has_rest(values: &[f64]) -> bool {
     false
 }
 
-/// Sets a frozen heading to missing: the heading leaves its value faster than the ship turns, or the ship turns before
-/// and after by much more than the heading resolves.
+/// Sets a frozen heading to missing and returns the warning; `None` without a freeze. After a freeze the heading leaves
+/// its value faster than the ship turns, or the ship turns before and after by much more than the heading resolves.
 fn blank_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
@@ -259,7 +264,7 @@ fn blank_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> O
     });
     let is_frozen = |span: &std::ops::Range<usize>| {
         let length = span.len();
-        // The resolution is the step from or to the value.
+        // The resolution is the larger of the steps to and from the value.
         let step = |at: Option<usize>| at.and_then(|at| steps.get(at)).copied().unwrap_or(0.0);
         let digit = step(span.start.checked_sub(1)).max(step(Some(span.end)));
         let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > MIN_TURN_STEPS * digit;

@@ -32,10 +32,11 @@ impl Date {
 /// Date, time of day or both, as a log states them, with the time zone if stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stamp {
+    /// `None` for a time of day alone.
     date: Option<Date>,
-    /// Second of the day; `None` in a column of dates.
+    /// Second of the day; `None` for a date alone.
     second: Option<f64>,
-    /// Minutes the local time is ahead of UTC.
+    /// Minutes by which the local time is ahead of UTC; `None` without a stated zone.
     zone: Option<i32>,
     /// `true` if the seconds have a nonzero fraction.
     fraction: bool,
@@ -51,7 +52,7 @@ pub fn date(day: i64) -> impl std::fmt::Display {
     i32::try_from(day).ok().and_then(NaiveDate::from_epoch_days).unwrap_or(NaiveDate::MAX)
 }
 
-/// Day of a text such as `2026-11-20`, as written by [`date`].
+/// Date of a text such as `2026-11-20`, as written by [`date`]; `None` for any other text.
 pub fn parse_date(text: &str) -> Option<String> {
     text.trim().parse::<NaiveDate>().ok().map(|day| day.to_string())
 }
@@ -105,7 +106,7 @@ impl Scan<'_> {
     }
 }
 
-/// Year from four digits or two.
+/// Year from four digits, or from two for the years 1970 to 2069; `None` for another number of digits.
 pub(crate) fn full_year(year: u32, digits: usize) -> Option<i32> {
     match digits {
         4 => Some(year as i32),
@@ -177,7 +178,7 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, fraction > 0.0))
 }
 
-/// Second of the day from `hhmmss.ss`.
+/// Second of the day from `hhmmss` or `hhmmss.ss`; `None` for any other text.
 pub(crate) fn second_of_day(digits: &[u8]) -> Option<f64> {
     let mut scan = Scan { tail: digits.strip_suffix(b".").unwrap_or(digits) };
     let (second, _) = read_time(&mut scan).filter(|_| digits.iter().take(6).all(u8::is_ascii_digit))?;
@@ -261,7 +262,7 @@ pub struct Clock {
     pub day: Option<i64>,
     /// Second of the day.
     pub second: f64,
-    /// Minutes of the clock ahead of UTC, if the file states a zone.
+    /// Minutes by which the clock is ahead of UTC; `None` without a stated zone.
     pub zone: Option<i32>,
 }
 
@@ -272,7 +273,7 @@ impl Clock {
         format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
     }
 
-    /// Date at time `t` (s) of the record: `2026-11-20`.
+    /// Date at time `t` (s) of the record: `2026-11-20`; `None` for a clock without a date.
     pub fn date_at(&self, t: f64) -> Option<String> {
         Some(date(self.day? + ((self.second + t) / SECONDS_PER_DAY).floor() as i64).to_string())
     }
@@ -290,26 +291,27 @@ impl Clock {
     }
 }
 
-/// Fault of a stamp without a time on the clock of its file.
+/// Reason why a stamp has no time on the clock of its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StampFault {
     /// Stamp without a time of day.
     NoTime,
-    /// The date changes, and either number may be the month.
+    /// The date changes and either number may be the month, or the date is invalid with the month of earlier dates.
     EitherMonth,
 }
 
 /// Converter of the time stamps of one file to seconds since its first stamp.
 #[derive(Debug, Clone, Default)]
 pub struct StampConverter {
+    /// First stamp; `None` before it.
     first: Option<Stamp>,
-    /// Last date, and its days after the first date.
+    /// Last date, and its days after the first date; `None` before a date was read.
     last: Option<(Date, i64)>,
     /// Time of day of the last stamp without a date, s.
     last_second: f64,
     /// Number of midnights passed, for stamps without a date.
     midnights: i64,
-    /// `true` if the first of two numbers is the month, once a date determines it.
+    /// `true` if the first of two numbers is the month; `None` until a date determines it.
     month_first: Option<bool>,
 }
 

@@ -123,7 +123,7 @@ pub enum Shortcoming {
     /// Median time between rows above the maximum interval.
     #[error("readings are {seconds:.0} s apart; required: at most {MAX_READING_INTERVAL_S} s")]
     Interval { seconds: f64 },
-    /// Loading other than full; her draught as a share of the draught at full load, if both are declared.
+    /// Loading other than full; the draught as a share of that at full load, `None` unless both are declared.
     #[error("the ship was not at full load{}", draught.map_or_else(String::new, draught_note))]
     Load { draught: Option<f64> },
     /// Declared full load that contradicts the draughts: the draught as a share of that at full load.
@@ -157,8 +157,9 @@ impl DeclaredConditions {
         self
     }
 
-    /// Merges the hull particulars of [ship] with those declared here. Returns the key declared in both with different
-    /// values, if any. Block coefficients may differ: the value here is that at full load.
+    /// Merges the hull particulars of `[ship]` with those declared here; undeclared draught and trim follow from the
+    /// draughts of `[trial]`. Returns the first key declared in both with different values, `None` without a conflict.
+    /// Block coefficients may differ: the value here is that at full load.
     pub(crate) fn join(&mut self, hull: HullParticulars) -> Option<&'static str> {
         let pairs = [
             ("beam-m", &mut self.beam, hull.beam),
@@ -181,7 +182,7 @@ impl DeclaredConditions {
     }
 
     /// Key of a contradictory declaration with the expected value: an impossible ratio of lengths, or weather in
-    /// addition to a declared calm.
+    /// addition to a declared calm. `None` for consistent declarations.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
         let length = self.particulars.map(|particulars| particulars.length);
         let calm = self.weather.map(|_| 1.0);
@@ -200,25 +201,25 @@ impl DeclaredConditions {
         broken.map(|(key, .., expected)| (key, expected))
     }
 
-    /// Draught at the trial as a share of that at full load.
+    /// Draught at the trial as a share of that at full load; `None` unless both are declared.
     fn draught_share(&self) -> Option<f64> {
         Some(self.draught? / self.full_load_draught?)
     }
 
-    /// Loading condition: as declared, else from the draughts with a tolerance of 5 %.
+    /// Loading condition: as declared, else from the draughts with a tolerance of 5 %; `None` if these are undeclared.
     pub fn loading(&self) -> Option<Loading> {
         let is_full = |share: f64| (share - 1.0).abs() <= MAX_DRAUGHT_DEVIATION_SHARE;
         let by_draught = |share: f64| if is_full(share) { Loading::Full } else { Loading::Partial };
         self.declared_loading.or_else(|| self.draught_share().map(by_draught))
     }
 
-    /// Mean draught at full load, m: as declared, or the draught of a trial at full load.
+    /// Mean draught at full load, m: as declared, or the draught of a trial that is declared at full load; else `None`.
     pub fn draught_at_full_load(&self) -> Option<f64> {
         let at_trial = || self.draught.filter(|_| self.declared_loading == Some(Loading::Full));
         self.full_load_draught.or_else(at_trial)
     }
 
-    /// Depth of the water in mean draughts of the trial.
+    /// Depth of the water in mean draughts of the trial; `None` unless both are declared.
     pub fn depth_in_draughts(&self) -> Option<f64> {
         Some(self.water_depth? / self.draught?)
     }

@@ -74,7 +74,7 @@ impl PageHead {
     }
 }
 
-/// Next field of a Thrift struct, if it is a whole number, still zigzag.
+/// Whole number in the next field of a Thrift struct, in zigzag encoding; `None` for a field of another kind.
 fn number(bytes: &mut &[u8]) -> Option<u64> {
     const NEXT_FIELD_INTEGER: u8 = 0x15;
     let (&field, mut digits) = bytes.split_first()?;
@@ -91,16 +91,16 @@ fn number(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// Zigzag number, if it is 0 or above.
+/// Number from its zigzag encoding; `None` for a negative number.
 fn whole(zigzag: u64) -> Option<u64> {
     zigzag.is_multiple_of(2).then_some(zigzag / 2)
 }
 
 /// Bytes of a Parquet file; the head of a page is checked before the page is decoded.
 pub struct CheckedPages<B> {
-    /// Bytes.
+    /// Bytes of the file.
     pub bytes: B,
-    /// Limit of the sizes that a page may state.
+    /// `true` for a page whose stated sizes are within the limits.
     pub fits: fn(PageHead) -> bool,
 }
 

@@ -29,7 +29,8 @@ impl Angle for Option<f64> {
     }
 }
 
-/// Degrees of an angle (rad), rounded to 14 digits so that the rounding of a conversion to radians and back vanishes.
+/// Degrees of an angle (rad), rounded to 14 significant digits so that the rounding of a conversion to radians and
+/// back vanishes.
 pub fn written_deg(angle: f64) -> f64 {
     ShortNumber::rounded(to_deg(angle), 14).0
 }

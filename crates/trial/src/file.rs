@@ -29,7 +29,7 @@ pub enum FileError {
     /// Device or a socket in place of a file.
     #[error("this is neither a file nor a pipe (a device or a socket); name a file")]
     NoFile,
-    /// File larger than the maximum size of its kind.
+    /// File larger than the maximum size of its kind; `size` (bytes) is `None` if it was not known before reading.
     #[error(
         "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.max_bytes
@@ -58,7 +58,7 @@ impl From<io::Error> for FileError {
 pub struct LimitedReader<'a> {
     file: Box<dyn Read + 'a>,
     kind: FileKind,
-    /// Size in bytes; `None` for a pipe.
+    /// Size in bytes; `None` for a pipe and standard input.
     pub size: Option<u64>,
     left: u64,
 }

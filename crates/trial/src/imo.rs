@@ -81,7 +81,8 @@ impl CriterionUnit {
 pub struct ImoCriterion {
     /// Name of the limited quantity.
     pub name: &'static str,
-    /// Measured value, in `unit`; the verdict uses the value without its uncertainty.
+    /// Measured value, in `unit`; `None` if the record does not give it. The verdict uses the value without its
+    /// uncertainty.
     pub measured: Option<Quantity>,
     /// Maximum value, in `unit`.
     pub limit: f64,

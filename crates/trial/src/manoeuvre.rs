@@ -108,7 +108,7 @@ pub enum Manoeuvre {
 /// Condition that triggers the next order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trigger {
-    /// Time, s, from the previous order at a step, or else from the beginning of the manoeuvre.
+    /// Time, s: from the previous order in an [`OrderStep`], on the clock of the run in the trigger of a helmsman.
     Time(f64),
     /// `side` · (ψ − base course) ≥ `angle`, with side ±1 and angle in rad.
     Deviation {
@@ -158,7 +158,8 @@ impl Manoeuvre {
         Self::Replay { file: String::new(), rudder: Some(rudder) }
     }
 
-    /// Zig-zag that ends at an execute, counted from 1; n executes give n − 2 complete overshoots.
+    /// Zig-zag that ends at an execute, counted from 1; n executes give n − 2 complete overshoots. Other manoeuvres are
+    /// unchanged.
     pub fn until_execute(mut self, number: usize) -> Self {
         if let Self::ZigZag { executes, .. } = &mut self {
             *executes = Some(number);
@@ -166,7 +167,7 @@ impl Manoeuvre {
         self
     }
 
-    /// Zig-zag or turning circle that ends a time after its first execute, s.
+    /// Zig-zag or turning circle that ends a time (s) after its first execute; other manoeuvres are unchanged.
     pub fn lasting(mut self, time: f64) -> Self {
         if let Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. } = &mut self {
             *duration = Some(time);
@@ -220,7 +221,7 @@ impl Manoeuvre {
         OrderStep { trigger, order, key }
     }
 
-    /// Steps in order, up to the end of the manoeuvre; endless for a zig-zag that ends with the record.
+    /// Steps in order, up to the end of the manoeuvre; endless for a zig-zag without a number of executes.
     pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
         let mut ended = false;
         (0..)
@@ -228,7 +229,7 @@ impl Manoeuvre {
             .take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
     }
 
-    /// Time from the first execute to the end, s; infinite if headings or the record determine it.
+    /// Time from the first execute to the end, s; infinite if a heading or the end of the recording determines it.
     pub fn duration(&self) -> f64 {
         if let Self::ZigZag { duration: Some(duration), .. } = self {
             return *duration;
@@ -243,7 +244,7 @@ impl Manoeuvre {
         total
     }
 
-    /// Maximum number of executes.
+    /// Maximum number of executes; [`usize::MAX`] for a zig-zag without a number of executes.
     pub fn max_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),

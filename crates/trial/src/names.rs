@@ -6,13 +6,13 @@ use crate::channel::{Channel, UNITS, Unit, parse_column_name, time_column_unit};
 /// Meaning of a column name: quantity and, if stated, unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ColumnMeaning {
-    /// Time, or a stamp of date and time.
+    /// Time, or a stamp of date and time, with its unit if stated.
     Time(Option<Unit>),
     /// Date without a time.
     Date,
     /// Channel, with its unit if stated.
     Channel(Channel, Option<Unit>),
-    /// Speed over ground, used as the speed if there is none through the water.
+    /// Speed over ground, with its unit if stated; used as the speed if there is none through the water.
     OverGround(Option<Unit>),
     /// Latitude, degrees north.
     Latitude,
@@ -96,7 +96,7 @@ pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
     UNITS.iter().flat_map(|&(unit, .., names)| names.split(", ").map(move |name| (name, unit)))
 }
 
-/// Unit of a text with or without brackets: `[deg]`, `(°/min)`, `kn`.
+/// Unit of a text with or without brackets: `[deg]`, `(°/min)`, `kn`; `None` for an unknown unit.
 pub fn parse_unit(text: &str) -> Option<Unit> {
     if text.len() > MAX_NAME_BYTES {
         return None;

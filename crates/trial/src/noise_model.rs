@@ -7,18 +7,19 @@ pub use document::MomentKind;
 pub struct NoiseModel {
     /// Standard deviation of the compass error, rad.
     pub heading_sd: f64,
-    /// Correlation time of the compass error, s; `None` for white.
+    /// Correlation time of the compass error, s; `None` for a white error.
     pub heading_correlation: Option<f64>,
-    /// Standard deviation of the white rate-gyro error, rad/s; used if a record has a yaw rate.
+    /// Standard deviation of the white rate-gyro error, rad/s; `None` if the yaw rate is not used.
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
     pub moment: MomentKind,
     /// Size q of the moment as yaw acceleration: (rad/s²)√s for white noise, the stationary standard deviation in
     /// rad/s² for an Ornstein–Uhlenbeck process, (rad/s²)/√s for a random walk.
     pub moment_level: f64,
-    /// Correlation time τ of an Ornstein–Uhlenbeck moment, s.
+    /// Correlation time τ of an Ornstein–Uhlenbeck moment, s; infinite for a random walk and without a moment, 0 for
+    /// white noise.
     pub moment_correlation: f64,
-    /// Standard deviation of the white error of the recorded rudder, rad; 0 for none.
+    /// Standard deviation of the white error of the recorded rudder, rad; 0 for an exact rudder.
     pub rudder_sd: f64,
 }
 

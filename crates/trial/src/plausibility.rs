@@ -42,28 +42,28 @@ pub enum Implausible {
          heading sensor was recorded and the right column is used"
     )]
     HeadingConstant { heading_deg: f64, rudder_deg: f64 },
-    /// Degrees in a column named in radians.
+    /// Rudder in degrees, in a column named in radians.
     #[error(
         "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
          name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml; if it already has \
          that name, its numbers have another scale"
     )]
     RudderInDegrees { largest_deg: f64 },
-    /// Radians in a column named in degrees.
+    /// Rudder in radians, in a column named in degrees.
     #[error(
         "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
          under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
          NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     RudderInRadians { largest_deg: f64, heading_deg: f64 },
-    /// Degrees in a column named in radians.
+    /// Heading in degrees, in a column named in radians.
     #[error(
         "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
          under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
          NAME.trial.toml; if it already has that name, its numbers have another scale"
     )]
     HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
-    /// Yaw rate in another unit than its column name, used for the heading.
+    /// Yaw rate in another unit than its column name states, in a record whose heading is its integral.
     #[error(
         "the yaw rate adds up to a turn of {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks \
          like deg/min under a name that says deg/s (a factor of 60), or degrees under a name that says radians (57.3); \
@@ -71,7 +71,7 @@ pub enum Implausible {
          NAME.trial.toml"
     )]
     YawRateInMinutes { heading_deg: f64, rudder_deg: f64 },
-    /// Radians in a column named in degrees.
+    /// Heading in radians, in a column named in degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
          radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
@@ -100,7 +100,7 @@ pub enum Implausible {
          sidecar NAME.trial.toml"
     )]
     YawRateSign { ratio: f64, culprit: &'static str },
-    /// The ship turns through several circles away from its rudder.
+    /// The ship turns by more than a circle away from its rudder.
     #[error(
         "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, {share_percent:.0} % of it to port \
          under positive rudder; write `flip = true` for the rudder column in a sidecar NAME.trial.toml (for the heading \
@@ -127,7 +127,7 @@ const MIN_RUDDER_RANGE_DEG: f64 = 4.0;
 /// more.
 const MIN_RESPONSE_DEG: f64 = 1.0;
 
-/// Bounds of the mean rate of turn of ships and models in a manoeuvre, deg/s.
+/// Bounds of the mean rate of turn of ships and models in a manoeuvre, deg/s: minimum, maximum.
 pub(crate) const MEAN_RATE_RANGE_DEG_S: [f64; 2] = [0.01, 15.0];
 
 /// Maximum number of reversals of a manoeuvre; a dither, a pseudo-random sequence or an autopilot in waves has more

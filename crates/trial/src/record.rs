@@ -288,18 +288,18 @@ impl Trial {
         self.rudder.path()
     }
 
-    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; empty if it does not
-    /// rest or move at one rate.
+    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; empty unless it rests
+    /// or moves at a constant rate.
     pub fn rudder_corners(&self) -> &[Corner] {
         &self.rudder.corners
     }
 
-    /// Yaw rate of every row, rad/s, if recorded; NaN if missing in a row.
+    /// Yaw rate of every row, rad/s, NaN if missing in a row; `None` if it was not recorded.
     pub fn yaw_rate(&self) -> Option<&[f64]> {
         self.channel(Channel::YawRate)
     }
 
-    /// Any channel, row by row, if recorded.
+    /// Any channel, row by row, in SI units and radians; `None` if it was not recorded.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         match channel {
             Channel::Rudder => Some(self.rudder()),
@@ -327,7 +327,7 @@ impl Trial {
         &self.rejected
     }
 
-    /// Length and approach speed of the ship, if declared.
+    /// Length and approach speed of the ship; `None` if undeclared.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
     }

@@ -95,9 +95,9 @@ const RESOLVED_SHARE: f64 = 0.25;
 /// Minimum relative standard deviation: the rounding of the arithmetic.
 const ROUNDING: f64 = 1e-12;
 
-/// Comparison of independent dimensionless estimates at different scales: the maximum difference of two, x₂ − x₁ in
-/// units of √(s₁² + s₂²), and its verdict. The difference is `None` if fewer than two estimates have a standard
-/// deviation.
+/// Comparison of independent dimensionless estimates at different scales: the difference of two, x₂ − x₁ in units of
+/// √(s₁² + s₂²), with the maximum magnitude, and its verdict. The difference is `None` if fewer than two estimates have
+/// a standard deviation.
 pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
     let with_sd: Vec<(f64, f64)> = estimates
         .iter()

@@ -43,7 +43,7 @@ pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
     pub(crate) which: ColumnReference,
     pub(crate) meaning: Option<ColumnMeaning>,
-    /// Value of a unit of the numbers; negative for a changed sign.
+    /// Factor of the numbers less `zero`, in the unit of `meaning`; negative for a changed sign.
     pub(crate) scale: f64,
     /// Number in the file at a value of zero.
     pub(crate) zero: f64,
@@ -70,13 +70,13 @@ impl Sidecar {
         table.with_extension("trial.toml")
     }
 
-    /// Path of the sidecar of a table, if the file exists.
+    /// Path of the sidecar of a table; `None` if there is no such file.
     pub fn existing_beside(table: &Path) -> Option<PathBuf> {
         Some(Self::beside(table)).filter(|beside| beside.is_file())
     }
 
-    /// Path of the sidecar of a table: the given file, or the file of its name in the given folder; else
-    /// the file next to the table.
+    /// Path of the sidecar of a table: the given file, or the file of its name in the given folder; else the file next
+    /// to the table. `None` without any of these.
     pub fn path_for(table: &Path, given: Option<&Path>) -> Option<PathBuf> {
         let given = given.and_then(|given| match given.is_dir() {
             true => Self::existing_beside(&given.join(table.file_name()?)),
@@ -118,7 +118,7 @@ impl Sidecar {
         self.table.header.unwrap_or(true)
     }
 
-    /// Used part of the record, s.
+    /// Used part of the record, s; an end that is not declared is infinite.
     pub(crate) fn used_interval(&self) -> RangeInclusive<f64> {
         self.part.from_s.unwrap_or(f64::NEG_INFINITY)..=self.part.until_s.unwrap_or(f64::INFINITY)
     }

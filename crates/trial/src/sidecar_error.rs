@@ -80,5 +80,5 @@ pub enum SidecarProblem {
     Value { key: String, value: String, expected: &'static str },
 }
 
-/// Problem with its position in the text.
+/// Problem with its range of bytes in the text; `None` for a problem without a place.
 pub(crate) type LocatedProblem = (Option<Range<usize>>, SidecarProblem);

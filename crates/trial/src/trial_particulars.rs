@@ -25,7 +25,7 @@ pub struct TrialParticulars {
 }
 
 impl TrialParticulars {
-    /// The same, with missing entries from `other`.
+    /// The same particulars, with missing entries from `other`.
     pub fn with_missing_from(self, other: &Self) -> Self {
         let text = |given: Option<String>, other: &Option<String>| given.or_else(|| other.clone());
         Self {
@@ -36,12 +36,12 @@ impl TrialParticulars {
         }
     }
 
-    /// Draughts fore and aft, m, if both are known.
+    /// Draughts fore and aft, m; `None` unless both are known.
     pub fn draughts(&self) -> Option<[f64; 2]> {
         Some([self.draught_fore?, self.draught_aft?])
     }
 
-    /// Mean of the draughts fore and aft, m.
+    /// Mean of the draughts fore and aft, m; `None` unless both are known.
     pub fn mean_draught(&self) -> Option<f64> {
         self.draughts().map(|[fore, aft]| 0.5 * (fore + aft))
     }
@@ -51,7 +51,8 @@ impl TrialParticulars {
         self.draughts().is_none_or(|[fore, aft]| (fore.min(aft)..=fore.max(aft)).contains(&draught))
     }
 
-    /// Trim, m, positive by the stern; rounded to a tenth of a millimetre, as a difference of two written numbers.
+    /// Trim, m, positive by the stern; `None` unless both draughts are known. It is rounded to a tenth of a millimetre,
+    /// as a difference of two written numbers.
     pub(crate) fn trim(&self) -> Option<f64> {
         self.draughts().map(|[fore, aft]| (1e4 * (aft - fore)).round() / 1e4)
     }

@@ -88,7 +88,7 @@ pub fn section() -> Section {
 fn linear_indices() -> Vec<Check> {
     let particulars = mariner::hull().particulars.expect("the Mariner has particulars");
     let found =
-        mariner::equations().linearised().indices().expect("the Mariner is course-stable").to_dimensional(particulars);
+        mariner::hull_model().linearised().indices().expect("the Mariner is course-stable").to_dimensional(particulars);
     let mut checks = Vec::new();
     let simulator = "Marine Systems Simulator (Fossen), from Chislett and Strøm-Tejsen (1965)";
     let mut push = |id: &str, what: &str, published, decimals: usize, ours, unit| {

@@ -152,7 +152,7 @@ fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[St
     Leaderboard { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
-/// Coverage of the intervals of a method, for K and T.
+/// Coverage of the intervals of a method, for K and T; `None` without intervals.
 fn coverage(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.contains_truth).collect();

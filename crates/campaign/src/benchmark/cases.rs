@@ -213,7 +213,8 @@ impl BenchCase {
     }
 }
 
-/// Number as stored, with six digits. Leaderboards are computed from stored numbers, so that they can be repeated.
+/// Number as stored, with six significant digits. Leaderboards are computed from stored numbers, so that they can be
+/// repeated.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("it was written as a number")
 }

@@ -6,7 +6,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | the studies of the program | [`embedded`] |
-//! | tasks and results | `questions`, [`cases`] |
+//! | tasks and results | `study_cases`, [`cases`] |
 //! | leaderboards | [`board`], [`naming`], [`overall`], `statistics` |
 //! | the whole result, as it is stored | [`results`] |
 

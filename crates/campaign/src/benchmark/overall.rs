@@ -1,5 +1,5 @@
 //! Overall ranking: mean over the leaderboards of predictions of the mean rank of each method (Friedman 1937). It does
-//! not determine by how much a method is better, on which ships or at which task.
+//! not state by how much a method is better, on which ships or at which task.
 
 use serde::{Deserialize, Serialize};
 
@@ -40,9 +40,13 @@ pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking
 
 /// Mean ranks of all methods on one leaderboard: for all cases, and for every resample of the sets.
 struct MeanRanks {
+    /// Labels of the methods.
     methods: Vec<String>,
+    /// Number of clusters.
     clusters: usize,
+    /// Mean rank over all cases, by method.
     whole: Vec<f64>,
+    /// Mean rank in each resample, by method.
     drawn: Vec<Vec<f64>>,
 }
 

@@ -107,7 +107,7 @@ impl BenchDocument {
 
     /// JSON text: indented, with one line per case.
     ///
-    /// Fails for a number that JSON cannot represent; stored numbers are finite.
+    /// Fails if serialisation fails. Stored numbers are finite; JSON has no others.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let head = serde_json::to_string_pretty(&Self { cases: Vec::new(), ..self.clone() })?;
         let lines: Vec<String> = self.cases.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;

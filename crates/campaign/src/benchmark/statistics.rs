@@ -44,7 +44,8 @@ pub fn median_and_p90(mut scores: Vec<f64>) -> [f64; 2] {
     [0.5, 0.9].map(|p| quantile(&scores, p))
 }
 
-/// Ratio of a score to the reference score in the same case: 1 if both failed, infinite if only the method failed.
+/// Ratio of a score to the reference score in the same case: 1 if both failed, infinite if only the method failed, 0 if
+/// only the reference failed.
 pub fn ratio(score: f64, reference: f64) -> f64 {
     if score == reference { 1.0 } else { score / reference }
 }

@@ -2,7 +2,8 @@
 //!
 //! The manoeuvres determine the tasks. A record that was fitted alone is replayed. A zig-zag as validation record is to
 //! the opposite side or of another amplitude; any other validation record is a turn. K and T are scored for first-order
-//! ships. In a study in which ships lack listed effects, the only task is to name them.
+//! ships. In a study in which ships lack listed effects, the only task of a cell with at most one of them is to name
+//! it.
 
 use std::collections::HashSet;
 
@@ -27,7 +28,8 @@ pub(super) struct StudyCases {
 /// Record with the steering that determines its task.
 struct SteeredRecord {
     record: BenchRecord,
-    /// Nominal rudder and heading angle of a zig-zag, deg, if known, and the side of the first execute.
+    /// Nominal rudder and heading angle of a zig-zag, deg, if known, and the side of the first execute; `None` for any
+    /// other manoeuvre.
     zig_zag: Option<(Option<[f64; 2]>, Side)>,
 }
 
@@ -69,7 +71,8 @@ impl SteeredRecord {
     }
 }
 
-/// Task of predicting a record from the fitted records; `None` if it repeats a fitted record, or if turns are fitted.
+/// Task of predicting a record from the fitted records; `None` if a turn is fitted, and for a zig-zag that is neither
+/// to the opposite side of all fitted zig-zags nor of another amplitude than all.
 fn prediction(fitted: &[&SteeredRecord], judge: &SteeredRecord) -> Option<BenchTask> {
     let fitted: Vec<_> = fitted.iter().map(|record| record.zig_zag).collect::<Option<_>>()?;
     let Some((angles, first)) = judge.zig_zag else { return Some(BenchTask::Circle) };
@@ -89,7 +92,7 @@ struct CellTasks {
     is_simulated: bool,
     /// `true` if K and T are known.
     has_indices: bool,
-    /// Missing effect, or none; `None` if it is not a task to name it.
+    /// Missing effect, the inner `None` if no effect is missing; the outer `None` if the effect is not to be named.
     missing: Option<Option<String>>,
 }
 
@@ -99,7 +102,7 @@ impl CellTasks {
             Some(set) => set.trials.iter().map(SteeredRecord::measured).collect(),
             None => cell.manoeuvres().into_iter().map(SteeredRecord::simulated).collect(),
         };
-        let missing = cell.missing();
+        let missing = cell.missing_effects();
         let is_to_be_named = is_of_names && missing.len() <= 1 && missing.iter().all(|id| id != HULL);
         Self {
             set: match cell.labels.first() {
@@ -140,7 +143,7 @@ impl CellTasks {
 
 /// Cases of a study with these rows, in the order of the design.
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
-    let lacks = |cell: &DesignCell| cell.missing().iter().any(|id| id != HULL);
+    let lacks = |cell: &DesignCell| cell.missing_effects().iter().any(|id| id != HULL);
     let is_of_names = scenario.cells.iter().any(lacks);
     let of_cell = |cell: &DesignCell| CellTasks::new(scenario, cell, is_of_names);
     let cells: Vec<CellTasks> = scenario.cells.iter().map(of_cell).collect();

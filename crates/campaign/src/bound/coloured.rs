@@ -15,10 +15,13 @@ pub struct CompassError {
     pub coloured: GaussMarkov,
 }
 
-/// Cramér–Rao bound of (1/T, K/T, K δ_r/T) for one trial of known truth, with unknown initial state: (JᵀΣ⁻¹J)⁻¹
-/// with the sensitivities J of the heading and the covariance of its errors.
+/// Cramér–Rao bound of 1/T (1/s), K/T (1/s²) and K δ_r/T (rad/s²) for one trial of known truth, with unknown initial
+/// state: their block of (JᵀΣ⁻¹J)⁻¹, with the sensitivities J of the heading and the covariance Σ of its errors.
 ///
-/// Σ_jk = σ² δ_jk + σ_w² exp(−|t_j − t_k|/τ)
+/// Σ_jk = σ² 1_{j=k} + σ_w² exp(−|t_j − t_k|/τ)
+///
+/// σ is the standard deviation of the white error; σ_w and τ are standard deviation and correlation time of the
+/// coloured error.
 ///
 /// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the record does not
 /// determine the parameters. Source: Cramér (1946), Rao (1945).

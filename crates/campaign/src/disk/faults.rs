@@ -45,6 +45,7 @@ impl Drop for Armed {
     }
 }
 
+/// Counts an operation on a path, and fails if a test makes this operation fail.
 pub(super) fn strike(path: &Path) -> io::Result<()> {
     if ARMED.load(Ordering::Relaxed) == 0 {
         return Ok(());

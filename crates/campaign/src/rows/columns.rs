@@ -28,8 +28,8 @@ pub(super) enum Access {
     Method,
 }
 
-/// Columns with their access to a row: a count, a number, one number of an array, a number of a trace, or functions of
-/// a text.
+/// Columns with their access to a row: a count, a number, one number of an array, a number of a trace, functions of a
+/// text, or the method.
 macro_rules! columns {
     ($($name:literal, $meaning:literal => $kind:ident $field:tt;)*) => {
         [$(RowColumn { name: $name, meaning: $meaning, access: access!($kind $field) }),*]
@@ -60,8 +60,9 @@ macro_rules! access {
     };
 }
 
-/// Columns of every file of rows, in order. They are followed by one column `axis.NAME` per axis of the design, a
-/// number or the label of the point, and one `draw.KEY` per sampled value, in the unit of the key.
+/// Columns of every file of rows, in order. They are followed by the further columns that apply to the study, one
+/// column `axis.NAME` per axis of the design, a number or the label of the point, and one `draw.KEY` per sampled value,
+/// in the unit of the key. For measured records the last columns are `fitted` and `judge`, the names of records.
 pub const COLUMNS: [RowColumn; 22] = columns! {
     "cell", "index of the cell in the design, from 0" => count(cell);
     "replicate", "index of the trial in its cell, from 0; every method sees the same trial" => count(replicate);
@@ -132,7 +133,7 @@ pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
         => text(sizes, set_sizes);
 };
 
-/// Further columns of a study whose scenario states the missing physics.
+/// Further columns of a study with a trace whose scenario states the missing physics.
 pub const LOCATED_COLUMNS: [RowColumn; 2] = columns! {
     "trace_times", "when the effects named act, s, joined by +; – for one that is no matter of time"
         => text(times, set_times);

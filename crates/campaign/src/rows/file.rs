@@ -22,8 +22,9 @@ use crate::block::Block;
 use crate::parquet_table::{self, Values};
 use crate::scenario::hex;
 
-/// Metadata keys of the label and its SHA-256.
+/// Metadata key of the label.
 const LABEL: &str = "kempf.block";
+/// Metadata key of the SHA-256 of the label.
 const LABEL_SHA256: &str = "kempf.block-sha256";
 
 /// Maximum size of a text of a row, bytes; failure messages of outside programs are far shorter.
@@ -79,7 +80,7 @@ struct SealedLabel {
 pub enum Damage {
     /// Damaged or altered; the text describes how.
     Changed(String),
-    /// Valid block of another study, program or position.
+    /// Block of another study, seed, program or position, according to its sound label.
     Foreign(BlockLabel),
 }
 
@@ -210,7 +211,7 @@ fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<
         }
         read += rows;
     }
-    // A column with a value in every row has no levels.
+    // A required column has no definition levels: every row has a value.
     present.resize(length, 1);
     let mut values = values.into_iter();
     Ok(present.into_iter().map(|level| if level > 0 { values.next() } else { None }).collect())

@@ -20,7 +20,7 @@ pub struct RowLayout {
     fixed: Vec<&'static RowColumn>,
     /// Names of the axes, each with the points of the cells.
     axes: Vec<(String, Values)>,
-    /// Records of every trial, by cell, in a study of measured records.
+    /// Records of every trial, by cell, in a study of measured records; `None` for simulated trials.
     records: Option<Vec<Vec<JudgedRecord>>>,
     draws: Vec<String>,
 }
@@ -182,7 +182,7 @@ impl RowLayout {
     }
 }
 
-/// Names of the records of trials.
+/// Column of record names, one per row; `None` for a trial outside the design.
 fn record_names(get: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
     let name = |row: &StudyRow| get(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
     Values::Texts(rows.iter().map(name).collect())

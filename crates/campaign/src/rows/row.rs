@@ -12,9 +12,10 @@ pub struct NamedEffect {
     pub id: Box<str>,
     /// Identifiers of the aliases, which the trial cannot distinguish from the effect.
     pub aliases: Vec<Box<str>>,
-    /// Time of a time-dependent effect, s: the centre of a transient, the onset of a lasting moment.
+    /// Time of a time-dependent effect, s: the centre of a transient, the onset of a lasting moment; `None` for any
+    /// other.
     pub time_s: Option<f64>,
-    /// Parameters of the effect, in a study of measured records.
+    /// Parameters of the effect, which only a study of measured records stores.
     pub sizes: Vec<EffectSize>,
 }
 
@@ -23,7 +24,7 @@ pub struct NamedEffect {
 pub struct EffectSize {
     /// Symbol, with a prime if nondimensional.
     pub symbol: Box<str>,
-    /// Value, otherwise in SI units and radians.
+    /// Value; in SI units and radians if it is dimensional.
     pub value: f64,
     /// Standard deviation; `None` for a parameter that is not fitted.
     pub sd: Option<f64>,
@@ -64,9 +65,9 @@ pub struct LocatedMoment {
     pub depends_on: Dependence,
     /// Description of the moment.
     pub form: Box<str>,
-    /// Onset, s, for a time-dependent moment.
+    /// Onset of a time-dependent moment, s; `None` for any other.
     pub from_s: Option<f64>,
-    /// End, s; `None` for a moment that lasts to the end of the record.
+    /// End of a time-dependent moment, s; `None` for one that lasts to the end of the record, and for any other.
     pub until_s: Option<f64>,
     /// Identifiers of listed effects that the trial cannot distinguish from the moment.
     pub alternatives: Vec<Box<str>>,
@@ -94,16 +95,17 @@ pub struct TraceRow {
     pub named: Vec<NamedEffect>,
     /// Located moments outside the list of effects, clearest first.
     pub located: Vec<LocatedMoment>,
-    /// Probabilities of effects, of at least 0.005.
+    /// Identifiers of effects and their probabilities, if at least 0.005.
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Log evidence of the missing effect less that of the best other effect; `None` unless exactly one effect is
     /// missing.
     pub margin: Option<f64>,
-    /// Expected 2 ln Λ of the truth against the nearest first-order response.
+    /// Expected 2 ln Λ of the truth against the nearest first-order response; `None` unless the heading noise is white.
     pub expected: Option<f64>,
-    /// Share of the headings of the trial inside the 95 % band of the traced model.
+    /// Share of the headings of the trial inside the 95 % band of the traced model; `None` without a band.
     pub band_fitted: Option<f64>,
-    /// Share of the headings of the validation manoeuvre inside the 95 % band of the traced model.
+    /// Share of the headings of the validation manoeuvre inside the 95 % band of the traced model; `None` without a
+    /// band.
     pub band_held_out: Option<f64>,
 }
 
@@ -170,7 +172,8 @@ impl StudyRow {
         }
     }
 
-    /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the slope of the response to the rudder at its beginning.
+    /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the initial yaw acceleration per rudder angle; `None`
+    /// without an estimate or a truth, and for an infinite error.
     pub fn errors(&self) -> [Option<f64>; 3] {
         let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.true_indices());
         let over = |k: Option<f64>, t: Option<f64>| Some(k? / t?);

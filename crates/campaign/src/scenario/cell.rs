@@ -17,11 +17,11 @@ use crate::scenario::specification::Specification;
 use crate::scenario::wire::ScenarioWire;
 use crate::scenario::{limits, reader, resolve, sweep};
 
-/// One cell of the design: the distribution of its trials is fixed.
+/// Cell of a design: trials of one distribution, and the methods that are applied to them.
 pub struct DesignCell {
     /// Labels of the points, one per axis.
     pub labels: Vec<String>,
-    /// Values of the points; `null` for an axis of labels.
+    /// Values of the points, one per axis; `None` on an axis of labels.
     pub values: Vec<Option<f64>>,
     /// Methods, all on the same trial.
     pub methods: Vec<Method>,
@@ -35,7 +35,7 @@ pub(crate) enum TrialSource {
     Simulated {
         /// Specification of a trial, with random values at the middle of their distributions.
         specification: Box<Specification>,
-        /// Template for trials with sampled values.
+        /// Template for trials with sampled values; `None` if no key is sampled.
         drawn: Option<DrawnSettings>,
     },
     /// Measured records.
@@ -52,7 +52,7 @@ pub(crate) struct DrawnSettings {
 }
 
 /// Specification of one trial, with its sampled values.
-pub struct TrialSpecification<'a> {
+pub struct SampledSpecification<'a> {
     /// Complete specification.
     pub specification: Cow<'a, Specification>,
     /// Sampled values in the units of their keys, in the order of
@@ -77,7 +77,7 @@ impl DesignCell {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
     }
 
-    /// Records of a cell of measured records.
+    /// Records of a cell of measured records; `None` for simulated trials.
     pub fn record_set(&self) -> Option<&RecordSet> {
         match &self.source {
             TrialSource::Simulated { .. } => None,
@@ -85,7 +85,7 @@ impl DesignCell {
         }
     }
 
-    /// Specification of simulated trials.
+    /// Specification of simulated trials; `None` for measured records.
     fn specification(&self) -> Option<&Specification> {
         match &self.source {
             TrialSource::Simulated { specification, .. } => Some(specification),
@@ -93,12 +93,13 @@ impl DesignCell {
         }
     }
 
-    /// Number of simulated records per trial.
+    /// Number of simulated records per trial, without the validation; 0 for measured records.
     pub fn record_count(&self) -> usize {
         self.specification().map_or(0, |spec| 1 + spec.further.len())
     }
 
-    /// Manoeuvres of a simulated trial: of its record, of further records, and of the validation.
+    /// Manoeuvres of a simulated trial: of its record, of further records, and of the validation; empty for measured
+    /// records.
     pub fn manoeuvres(&self) -> Vec<&Manoeuvre> {
         let Some(Specification { simulation, further, validation, .. }) = self.specification() else {
             return Vec::new();
@@ -107,7 +108,7 @@ impl DesignCell {
     }
 
     /// Identifiers of the effects missing from a first-order base in its trials.
-    pub fn missing(&self) -> Vec<String> {
+    pub fn missing_effects(&self) -> Vec<String> {
         self.specification().map_or_else(Vec::new, |spec| spec.missing.clone())
     }
 
@@ -116,14 +117,15 @@ impl DesignCell {
         self.specification().is_some_and(|spec| spec.stated.is_some())
     }
 
-    /// Physics that a first-order base lacks in its trials: as stated in the scenario, or from its listed effects.
+    /// Physics that a first-order base lacks in its trials: as stated in the scenario, or from its listed effects;
+    /// `None` for measured records, and if neither determines it.
     pub(crate) fn physics(&self) -> Option<MissingPhysics> {
         let Specification { stated, missing, simulation, .. } = self.specification()?;
         let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
         stated.clone().or_else(|| MissingPhysics::from_effects(missing, is_disturbed))
     }
 
-    /// `true` for a first-order base with effects, not equal to the nearest first-order response in K and T.
+    /// `true` for a response ship with effects, whose first-order base differs from the nearest first-order response.
     pub fn is_base_with_effects(&self) -> bool {
         self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
     }
@@ -160,16 +162,16 @@ impl DesignCell {
     ///
     /// Fails for measured records, and for sampled values that specify no trial, possible for unbounded distributions
     /// only.
-    pub fn trial_spec(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, InvalidSample> {
+    pub fn trial_spec(&self, key: &StreamKey) -> Result<SampledSpecification<'_>, InvalidSample> {
         let TrialSource::Simulated { specification, drawn } = &self.source else {
             return Err(InvalidSample("the trials are measured records, and nothing is simulated".to_owned()));
         };
         let Some(drawn) = drawn else {
-            return Ok(TrialSpecification { specification: Cow::Borrowed(&**specification), drawn: Vec::new() });
+            return Ok(SampledSpecification { specification: Cow::Borrowed(&**specification), drawn: Vec::new() });
         };
         let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.sample(key)).collect();
         let specification = drawn.specification(&values).map_err(|fault| InvalidSample(fault.problem))?;
-        Ok(TrialSpecification { specification: Cow::Owned(specification), drawn: values })
+        Ok(SampledSpecification { specification: Cow::Owned(specification), drawn: values })
     }
 }
 

@@ -38,7 +38,7 @@ pub struct Scenario {
     pub replicates: u64,
     /// Axes of the design.
     pub axes: Vec<SweepAxis>,
-    /// Cells of the design, the first axis slowest.
+    /// Cells of the design; the first axis varies slowest.
     pub cells: Vec<DesignCell>,
     /// Published values of other authors.
     pub published: Published,
@@ -46,9 +46,9 @@ pub struct Scenario {
     pub prose: Prose,
     /// Keys that are sampled anew in every trial.
     pub draws: Vec<String>,
-    /// Stopping rule of the cells.
+    /// Stopping rule of the cells; `None` if every cell has all replicates.
     pub stop: Option<StopRule>,
-    /// Manoeuvres predicted from every estimate.
+    /// Manoeuvres predicted from every estimate; `None` without predictions.
     pub predictions: Option<PredictionSettings>,
     /// SHA-256 of the design and of the records it replays; a seed from the command line is not included.
     pub design_sha256: String,
@@ -226,7 +226,7 @@ impl Scenario {
     }
 
     /// Scenario with the methods of these labels, or all for an empty list; `None` if no method is left.
-    pub fn with_methods(mut self, labels: &[String]) -> Option<Self> {
+    pub fn restricted_to_methods(mut self, labels: &[String]) -> Option<Self> {
         if !labels.is_empty() {
             for cell in &mut self.cells {
                 cell.methods.retain(|method| labels.contains(&method.label));
@@ -324,7 +324,7 @@ fn folder_of(path: &Path) -> PathBuf {
     path.parent().map(PathBuf::from).unwrap_or_default()
 }
 
-/// Limits of a scenario, alone or in a manifest; the longest published scenario has a hundredth of this size.
+/// Name and maximum size of a scenario, alone or in a manifest; the longest published one has a hundredth of this size.
 const SCENARIO: FileKind = FileKind { name: "a scenario", max_bytes: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {

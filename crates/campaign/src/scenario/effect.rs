@@ -234,7 +234,7 @@ struct EffectParameter {
     key: &'static str,
     /// Number as written.
     written: f64,
-    /// Unit of that number in SI.
+    /// Ratio of the value to that number: the unit in SI, divided by T for [`NumberConversion::OverT`].
     unit: f64,
 }
 
@@ -250,6 +250,7 @@ fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f6
     if let ([_, ScenarioNumber { role: NumberConversion::Direction, .. }], [strength, from]) =
         (&keys[..], &settings[..])
     {
+        // The parameters are the components of strength · sin 2(ψ_w − ψ) along cos 2ψ and sin 2ψ.
         let twice = 2.0 * from.value;
         let component = |share: f64| match from.written.is_finite() {
             true => EffectParameter { value: strength.value * share, ..*strength },

@@ -1,7 +1,7 @@
 //! Units in the names of keys, and axis titles from keys.
 
-/// Endings of keys and their units, in decreasing length.
-const UNITS: [(&str, &str); 20] = [
+/// Endings of keys and their units; an ending stands before any shorter ending with which it ends.
+const UNITS: [(&str, &str); 22] = [
     ("-deg-per-root-s", "deg/√s"),
     ("-s2-per-deg2", "s²/deg²"),
     ("-s-per-deg2", "s/deg²"),
@@ -20,7 +20,9 @@ const UNITS: [(&str, &str); 20] = [
     ("-percent", "%"),
     ("-minutes", "min"),
     ("-hours", "h"),
+    ("-m2", "m²"),
     ("-mm", "mm"),
+    ("-t", "t"),
     ("-rps", "1/s"),
 ];
 

@@ -88,8 +88,10 @@ impl<'a> SchemaWalk<'a> {
             (.., Some("string")) => String::from("text"),
             _ => String::from("table"),
         };
-        let meaning =
-            [variant, written, value].into_iter().find_map(|schema| schema["description"].as_str()).unwrap_or_default();
+        // A variant with one key has the description of the key.
+        let descriptions =
+            if fields(variant).count() > 1 { [written, value, variant] } else { [variant, written, value] };
+        let meaning = descriptions.into_iter().find_map(|schema| schema["description"].as_str()).unwrap_or_default();
         let default = match &written["default"] {
             _ if is_required => KeyDefault::Required,
             Value::Null | Value::Array(_) | Value::Object(_) => KeyDefault::Nothing,
@@ -164,5 +166,9 @@ mod tests {
         assert_eq!(of("identifier[].method.output-error.iterations").unit, "whole number");
         assert_eq!(of("output.figures").unit, "list");
         assert_eq!(of("recording.weather").unit, "none");
+        assert_eq!(of("ship.hull.rudder-area-m2").unit, "m²");
+        assert_eq!(of("ship.hull.displacement-t").unit, "t");
+        assert!(of("effect[].stands-for").meaning.starts_with("Effects of the list"));
+        assert!(of("effect[].nonlinear_damping.n3-s2-per-deg2").unit == "s²/deg²");
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::scenario::problem::{KeyFault, KeyPath};
 
-/// Maximum number of `[[sweep]]` entries: with two points each, more would exceed the number of cells.
+/// Maximum number of `[[sweep]]` entries: with two points each, more would exceed the maximum number of cells.
 pub const MAX_SWEEPS: usize = 16;
 
 /// Maximum number of `[[draw]]` entries: each is checked at both ends of its range in every cell.

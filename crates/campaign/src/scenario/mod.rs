@@ -45,7 +45,7 @@ pub mod stop;
 pub mod sweep;
 mod wire;
 
-pub use cell::{DesignCell, InvalidSample, TrialSpecification};
+pub use cell::{DesignCell, InvalidSample, SampledSpecification};
 pub use checked::Scenario;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};

@@ -24,9 +24,9 @@ pub enum InvalidText {
     /// Text that is too long.
     #[error("expected at most {most} characters, this text has {length}")]
     Long {
-        /// Maximum number of characters.
+        /// Maximum number of characters, or of bytes of a file name.
         most: usize,
-        /// Number of characters.
+        /// Number of characters, or of bytes of a file name.
         length: usize,
     },
     /// Character that cannot be printed.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::reader;
 
-/// Name with a table of numbers below it.
+/// Names, each with a table of numbers.
 pub type NamedNumbers = BTreeMap<String, BTreeMap<String, f64>>;
 
 /// Key of a number in such a table.
@@ -20,7 +20,7 @@ pub struct NumberKey {
     pub meaning: &'static str,
     /// `true` if it is required.
     pub is_required: bool,
-    /// Default value.
+    /// Value of an omitted key; `None` without a default.
     pub default: Option<f64>,
 }
 

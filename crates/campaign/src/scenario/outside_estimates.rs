@@ -23,7 +23,7 @@ impl OutsideEstimates {
         Self { answers, source_sha256 }
     }
 
-    /// SHA-256 of their source.
+    /// SHA-256 of the source of the estimates, hexadecimal.
     pub fn source_sha256(&self) -> &str {
         &self.source_sha256
     }

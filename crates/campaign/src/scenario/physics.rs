@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 
-/// Keys of [`PhysicsWire`], except the constants of a formula.
+/// Keys of [`PhysicsWire`], which stand beside the constants of a formula.
 pub const KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
 
 /// Correct findings for a formula, as written in its entry.

@@ -27,7 +27,7 @@ const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 /// Predictions made from every estimate of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PredictionSettings {
-    /// Manoeuvres that are predicted.
+    /// Manoeuvres that are predicted; empty for measured records, whose validation records are predicted.
     pub manoeuvres: Vec<Manoeuvre>,
     /// Number of ships drawn for every prediction.
     pub draws: usize,

@@ -45,8 +45,8 @@ impl Presentation {
     /// Keys of the table.
     const KEYS: [&str; 7] = ["showcase", "figure", "title", "highlight", "figures", "marks", "detail"];
 
-    /// Removes the keys of other versions, which determine no row, from `output` in the scenario of a manifest; their
-    /// names.
+    /// Removes the keys of other versions, which determine no row, from `output` in the scenario of a manifest; returns
+    /// their names.
     pub(crate) fn remove_unknown(document: &mut Table) -> Vec<String> {
         let Some(Value::Table(output)) = document.get_mut("output") else { return Vec::new() };
         let is_unknown = |key: &&String| !Self::KEYS.contains(&key.as_str());

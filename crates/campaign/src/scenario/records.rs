@@ -136,13 +136,13 @@ impl Default for JudgeWire {
 pub struct RecordSplit {
     /// Indices of the records fitted together.
     pub fitted: Vec<usize>,
-    /// Index of the validation record.
+    /// Index of the validation record; `None` without validation.
     pub validation: Option<usize>,
 }
 
 /// Records of a cell, with the splits of the trials.
 pub struct RecordSet {
-    /// Records, in the order of their names.
+    /// Records, in the order of the listed files; those that match one pattern are sorted by name.
     pub trials: Vec<Trial>,
     /// Splits of the trials; equal fits are adjacent.
     pub splits: Vec<RecordSplit>,
@@ -150,7 +150,7 @@ pub struct RecordSet {
     pub absent: Vec<(String, String)>,
     /// Warnings of the reader, one line each.
     pub warnings: Vec<String>,
-    /// SHA-256 of every file and its sidecar.
+    /// SHA-256 of all files and their sidecars, hexadecimal.
     sha256: String,
     /// Cache of [`without_spikes`](Self::without_spikes).
     without_spikes: OnceLock<Vec<Trial>>,
@@ -169,7 +169,8 @@ impl RecordSet {
 
     /// Records of a `[records]` table.
     ///
-    /// Fails if a file is missing or is not a record, and if no split is left.
+    /// Fails if a file without a SHA-256 is missing, if a present file is not a record, if a name repeats, and if no
+    /// split is possible although all records are present.
     pub(crate) fn read(wire: &RecordsWire, folder: &Path) -> Result<Self, KeyFault> {
         let key = KeyPath::from_dotted("records");
         let ListedFiles { paths, absent } = files(wire, folder, &key)?;
@@ -212,7 +213,7 @@ impl RecordSet {
 /// Files of records, present and absent.
 #[derive(Default)]
 struct ListedFiles {
-    /// Present files, each with its sidecar.
+    /// Present files, each with its sidecar, if any.
     paths: Vec<(PathBuf, Option<PathBuf>)>,
     /// Absent files, with the reason.
     absent: Vec<(String, String)>,

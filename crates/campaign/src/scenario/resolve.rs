@@ -65,7 +65,8 @@ fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
 
 /// Ship of the simulation: the ship, with speed and sway added to its yaw response if the scenario has them.
 ///
-/// Fails for a hull, for a ship without length and speed, and for a coefficient outside its range.
+/// With speed and sway it fails for a hull, for a ship without length and speed, and for a coefficient outside its
+/// range.
 fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, KeyFault> {
     let simulated = SimulatedShip::from_ship(ship);
     let Some(coefficients) = wire.speed_and_sway else { return Ok(simulated) };
@@ -86,7 +87,7 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
 }
 
 /// Identifiers of the effects missing from a first-order base in a trial: effects of the ship, and effects equal to a
-/// disturbance.
+/// disturbance or to a delay or lag of the heading sensor; [`HULL`] for a hull.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
         ShipModel::Response(response) => response.model().effects().iter().map(|effect| effect.id().into()).collect(),

@@ -12,15 +12,15 @@ pub struct Specification {
     pub simulation: Simulation,
     /// Further records of the same ship, identified together with the first.
     pub further: Vec<Simulation>,
-    /// Validation manoeuvre of the same ship, undisturbed and without measurement noise.
+    /// Validation manoeuvre of the same ship, undisturbed and without measurement noise; `None` without validation.
     pub validation: Option<Simulation>,
-    /// True response, if the ship is first order.
+    /// True response of a first-order ship; `None` for any other ship.
     pub truth: Option<FirstOrder>,
-    /// First-order base of a response ship, with or without effects.
+    /// First-order base of a response ship, with or without effects; `None` for a hull.
     pub base: Option<FirstOrder>,
     /// Identifiers of the effects missing from a first-order base in a trial; [`HULL`] for a hull.
     pub missing: Vec<String>,
-    /// Missing physics stated by its formula.
+    /// Missing physics as stated with a formula; `None` without such a statement.
     pub stated: Option<MissingPhysics>,
 }
 

@@ -15,7 +15,7 @@ use crate::scenario::name;
 use crate::scenario::part::ScenarioPart;
 use crate::scenario::problem::{FaultMark, KeyFault, KeyPath, text_fault};
 
-/// Maximum number of cells; a larger one is an error in a range.
+/// Maximum number of cells; more indicate an error in a range.
 const MAX_CELLS: usize = 100_000;
 
 /// Axis as written: `[[sweep]]`.
@@ -76,7 +76,7 @@ pub struct SweepAxis {
 pub struct SweepPoint {
     /// Label of the point.
     pub label: String,
-    /// Value on a numeric axis.
+    /// Value on a numeric axis; `None` for a point with a label alone.
     pub value: Option<f64>,
     /// Keys that the point sets, with their values.
     pub set: Vec<SweepSetting>,

@@ -17,7 +17,7 @@ pub const BOOTSTRAP_SEED: u64 = 1979;
 #[derive(Debug, Clone)]
 pub struct Resamples {
     batches: usize,
-    /// [`RESAMPLE_COUNT`] counts of every batch.
+    /// [`RESAMPLE_COUNT`] counts of every batch, batch by batch.
     counts: Vec<u8>,
 }
 
@@ -41,7 +41,8 @@ impl Resamples {
         self.batches
     }
 
-    /// Statistics of the same sums with percentile intervals. `None` if undefined; no interval below six values.
+    /// Statistics of the same sums with percentile intervals; `None` for an undefined statistic. There is no interval
+    /// below six values, for more batches than were resampled, and unless most resamples define the statistic.
     pub fn bootstrap<const N: usize>(
         &self,
         batches: &[BatchSums],

@@ -19,7 +19,7 @@ pub fn resample_sets<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> 
     draws(draw, compute)
 }
 
-/// Percentile 95 % interval of resampled values, in any order; `None` below six clusters.
+/// Percentile 95 % interval of resampled values, in any order; `None` below six clusters, and without values.
 pub fn percentile_interval(clusters: usize, mut values: Vec<f64>) -> Option<[f64; 2]> {
     values.sort_by(f64::total_cmp);
     let end = |p: f64| values[((values.len() - 1) as f64 * p).round() as usize];

@@ -22,7 +22,7 @@ const SLOPE_SD: f64 = 10.0;
 /// Drop of the log likelihood at the ends of the interval: half the 95 % quantile of χ² with one degree of freedom.
 const LIKELIHOOD_DROP: f64 = 1.920_729_410_347_062;
 
-/// Maximum distance of the detection size from the tried sizes, as a logarithm.
+/// Maximum distance of the logarithm of the detection size from those of the tried sizes.
 const SEARCH_RANGE: f64 = 7.0;
 
 /// Number of bisections of a range.
@@ -74,8 +74,8 @@ impl ShareLine<'_> {
         })
     }
 
-    /// Maximum-likelihood slope of a line that reaches the share at a place: the zero of the derivative of the
-    /// likelihood.
+    /// Slope of a line that reaches the share at log size `place`: the zero of the derivative of the log likelihood
+    /// with its ridge penalty.
     fn slope(&self, place: f64) -> f64 {
         let falls = |slope: f64| {
             let derivative = |[after, trials, seen, logit]: [f64; 4]| after * (seen - trials * chance(logit));

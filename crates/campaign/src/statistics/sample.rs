@@ -11,10 +11,10 @@ const MAX_EXACT_VALUES: usize = 8192;
 /// Relative accuracy of a binned value.
 const ACCURACY: f64 = 1e-3;
 
-/// Absolute value below which a value counts as zero.
+/// Absolute value below which a binned value counts as zero.
 const ZERO: f64 = 1e-12;
 
-/// Maximum extent of a density beyond the quartiles, in quartile distances.
+/// Maximum extent of a density beyond the quartiles, in interquartile ranges.
 const TAILS: f64 = 3.0;
 
 /// Sample of finite values: exact up to `MAX_EXACT_VALUES`, then counts in bins of relative accuracy `ACCURACY`.
@@ -49,7 +49,7 @@ impl ErrorSample {
     }
 }
 
-/// Bin 0 is zero, bin ±(1 + k + OFFSET) contains |x| in (γᵏ⁻¹, γᵏ].
+/// Offset of bin numbers from the exponent k: bin 0 is zero, bin ±(1 + k + OFFSET) contains |x| in (γᵏ⁻¹, γᵏ].
 const OFFSET: i32 = 1 << 20;
 
 fn growth() -> f64 {
@@ -139,18 +139,18 @@ impl OrderedSample {
         Self::from_counts(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
     }
 
-    /// Median absolute deviation from the median, not scaled to a standard deviation.
+    /// Median absolute deviation from the median, not scaled to a standard deviation; `None` without values.
     pub fn mad(&self) -> Option<Statistic> {
         self.absolute_deviations(self.quantile(0.5)?).quantile_statistic(0.5)
     }
 
-    /// Gaussian kernel density at `points` abscissae over the middle 98 %, at most three quartile distances beyond the
-    /// quartiles, so that heavy tails do not spread the abscissae too far for the kernel. Bandwidth of Silverman (1986,
-    /// eq. 3.31); empty for fewer than ten values and for constant values.
+    /// Gaussian kernel density at `points` abscissae over the middle 98 %, at most three interquartile ranges beyond
+    /// the quartiles, so that heavy tails do not spread the abscissae too far for the kernel. Bandwidth of Silverman
+    /// (1986, eq. 3.31); empty for fewer than ten values and for equal quartiles.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;
-        // 1.349: quartile distance of a normal distribution over its standard deviation, robust against heavy tails.
+        // A normal distribution has an interquartile range of 1.349 standard deviations; this is robust to heavy tails.
         let spread = (quantiles[2] - quantiles[1]) / 1.349;
         if self.len() < 10 || spread <= 0.0 || points < 2 {
             return Vec::new();

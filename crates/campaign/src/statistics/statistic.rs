@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 pub struct Statistic {
     /// Value of the statistic.
     pub value: f64,
-    /// 95 % interval, if the sample is sufficiently large.
+    /// 95 % interval; `None` for a sample that is too small.
     pub ci95: Option<[f64; 2]>,
 }
 
 impl Statistic {
-    /// Value and ends of the interval; `None` if undefined.
+    /// Value, and lower and upper end of the interval; `None` if undefined.
     pub fn value_and_ends(figure: Option<Self>) -> [Option<f64>; 3] {
         let ends = figure.and_then(|figure| figure.ci95);
         [figure.map(|figure| figure.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]

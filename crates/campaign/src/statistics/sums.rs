@@ -11,9 +11,9 @@ pub const BATCH_COUNT: usize = 256;
 pub struct BatchSums {
     /// Number of values.
     pub count: f64,
-    /// Sum of the values minus the shift.
+    /// Sum of the differences of the values from a common shift.
     pub first: f64,
-    /// Sum of the squares of the values minus the shift.
+    /// Sum of the squares of these differences.
     pub second: f64,
 }
 

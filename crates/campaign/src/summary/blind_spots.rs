@@ -4,7 +4,7 @@ use super::tracing::TraceSummary;
 use crate::design::Design;
 use crate::statistics::{DetectionCount, Statistic, detection_size, grouped};
 
-/// Share of the trials that name an effect at the size from which it is found.
+/// Share of the trials that name an effect at its detection size.
 pub const MIN_NAMED_SHARE: f64 = 0.9;
 
 /// Blind spot: the minimum size at which a trace names an effect, under one set of conditions.
@@ -32,7 +32,8 @@ impl BlindSpot {
     }
 }
 
-/// Axis of effect sizes: the first with a label that consists of a name and its value.
+/// Index of the axis of effect sizes, the first with a label that consists of an effect and its size; `None` without
+/// one.
 pub fn effect_size_axis(design: &Design) -> Option<usize> {
     let has_size = |axis: &usize| {
         design
@@ -63,7 +64,7 @@ pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
     groups.into_iter().filter_map(spot).collect()
 }
 
-/// Effect, size and unit in a label such as `wind 0.7°` of a point with the value 0.7.
+/// Effect, size and unit in a label such as `wind 0.7°` of a point with the value 0.7; `None` for any other label.
 fn parts(label: &str, value: Option<f64>) -> Option<(String, f64, String)> {
     let size = value.filter(|size| *size > 0.0)?;
     let (effect, unit) = label.split_once(&format!(" {size}"))?;

@@ -7,10 +7,10 @@ use crate::statistics::OrderedSample;
 /// Number of abscissae of a density.
 const PLACES: usize = 160;
 
-/// Maximum number of error pairs kept per cell.
+/// Maximum number of error pairs kept per cell and method.
 pub(super) const MAX_PAIRS: usize = 2000;
 
-/// Maximum number of error pairs plotted per cell.
+/// Maximum number of error pairs plotted per cell and method.
 const MAX_DRAWN_PAIRS: usize = 400;
 
 /// Limit of winsorising, in robust standard deviations; without it a few outliers inflate the covariance (Huber
@@ -23,9 +23,9 @@ const SD_OVER_MAD: f64 = 1.482_602_2;
 /// Distribution of the errors of one index.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorDensity {
-    /// Abscissae, %, and densities; empty for constant values.
+    /// Pairs of an error, %, and its density, 1/%; empty for too few values and for equal quartiles.
     pub density: Vec<(f64, f64)>,
-    /// Quantiles of 2.5, 25, 50, 75 and 97.5 %.
+    /// 2.5, 25, 50, 75 and 97.5 % quantiles of the error, %.
     pub quantiles: [f64; 5],
 }
 
@@ -81,11 +81,11 @@ impl Cloud {
 /// Distributions of the errors of one method.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MethodDetail {
-    /// Errors of K.
+    /// Errors of K; `None` without values.
     pub violin_k: Option<ErrorDensity>,
-    /// Errors of T.
+    /// Errors of T; `None` without values.
     pub violin_t: Option<ErrorDensity>,
-    /// Errors of K and T together.
+    /// Errors of K and T together; `None` below ten pairs.
     pub cloud: Option<Cloud>,
 }
 

@@ -92,7 +92,7 @@ impl Judgement {
         }
     }
 
-    /// Judgement if a dependence is correct, with times if it has any.
+    /// Judgement on a ship with a moment on no list, by the dependence of the moment and by its times, if any.
     fn from_moments(answer: &TraceRow, physics: &MissingPhysics) -> Self {
         let mut of_ship = answer.named.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
         if of_ship.peek().is_some() {

@@ -9,7 +9,7 @@ use super::predictions::PredictionSummary;
 use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
-/// Statistics of the relative errors of one index over trials: errors in %, shares from 0 to 1.
+/// Statistics of the relative errors of one index over trials: errors in %, shares from 0 to 1, `None` if undefined.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct IndexErrors {
     /// Mean estimate, SI units, with its normal interval.
@@ -22,17 +22,17 @@ pub struct IndexErrors {
     pub sd: Option<Statistic>,
     /// Root mean square error, %.
     pub rms: Option<Statistic>,
-    /// Median absolute deviation from the median, not scaled.
+    /// Median absolute deviation from the median, not scaled to a standard deviation, %.
     pub mad: Option<Statistic>,
-    /// Quantiles of the error: 2.5, 25, 75 and 97.5 %.
+    /// 2.5, 25, 75 and 97.5 % quantiles of the error, %.
     pub quantiles: [Option<Statistic>; 4],
-    /// Median absolute error.
+    /// Median absolute error, %.
     pub median_size: Option<Statistic>,
-    /// 90 % quantile of the absolute error.
+    /// 90 % quantile of the absolute error, %.
     pub high_size: Option<Statistic>,
     /// Coverage of the quoted 95 % intervals.
     pub coverage: Option<Statistic>,
-    /// Median width of the quoted 95 % intervals.
+    /// Median width of the quoted 95 % intervals, relative to the truth, %.
     pub width: Option<Statistic>,
     /// Share of estimates with an interval.
     pub quoting: Option<Statistic>,
@@ -61,7 +61,7 @@ pub struct Performance {
     pub validation_rmse_deg: Option<Statistic>,
     /// 90 % quantile of the heading error on the validation manoeuvre, deg.
     pub high_validation_rmse_deg: Option<Statistic>,
-    /// Mean number of model evaluations.
+    /// Mean number of model evaluations per estimate; `None` without an estimate.
     pub evaluations: Option<f64>,
 }
 
@@ -90,7 +90,7 @@ pub struct Comparison {
     pub rms_difference: Option<Statistic>,
     /// Ratio of the rms errors, method over reference.
     pub rms_ratio: Option<Statistic>,
-    /// Share of trials in which the error of the method is smaller.
+    /// Share of trials in which the error of the method is smaller; ties count half.
     pub closer: Option<Statistic>,
 }
 
@@ -131,7 +131,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Performance of a method in a cell.
+    /// Performance of a method in a cell; `None` for a cell without rows.
     pub fn performance(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;

@@ -21,7 +21,7 @@ pub struct PredictionSummary {
     pub name: Box<str>,
     /// Number of trials with the characteristic.
     pub trials: u64,
-    /// IMO criterion of the characteristic, with the decisions on it.
+    /// IMO criterion of the characteristic, with the decisions on it; `None` for a characteristic without a limit.
     pub criterion: Option<ImoDecisionTally>,
     /// Number of trials whose 90 % interval, scaled about the median by each of [`INTERVAL_SCALES`], contains the true
     /// value, and sum of their interval scores.
@@ -47,19 +47,20 @@ fn interval_score([low, high]: [f64; 2], truth: f64) -> f64 {
     high - low + 2.0 / (1.0 - NOMINAL) * ((low - truth).max(0.0) + (truth - high).max(0.0))
 }
 
-/// Scaling of the intervals of one ship by the smallest factor that covers 90 % of the figures of the other ships.
+/// Scaling of the intervals of one ship by the smallest factor that covers 90 % of the characteristics of other ships.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConformalScaling {
     /// Factor on both parts of an interval, below and above its median.
     pub factor: f64,
-    /// Mean coverage over the figures, unscaled and scaled.
+    /// Mean coverage over the characteristics, unscaled and scaled.
     pub coverage: [f64; 2],
-    /// Median over the figures of the interval score, relative to the true value, unscaled and scaled.
+    /// Median over the characteristics of the interval score, relative to the true value, unscaled and scaled.
     pub score: [f64; 2],
 }
 
 impl ConformalScaling {
-    /// Scaling of `predictions` by the factor of the `calibration` predictions, every figure with the same weight.
+    /// Scaling of `predictions` by the factor of the `calibration` predictions, with equal weights of all
+    /// characteristics.
     ///
     /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
     /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
@@ -84,7 +85,7 @@ impl ConformalScaling {
 pub struct ImoDecisionTally {
     /// Name of the criterion.
     pub name: Box<str>,
-    /// Maximum allowed value.
+    /// Maximum allowed value, in the unit of the characteristic.
     pub limit: f64,
     /// Number of trials whose ship meets the criterion.
     pub kept: u64,
@@ -158,7 +159,7 @@ impl PredictionSummary {
     }
 }
 
-/// Adds the predictions of a row; `length_over_speed` is L/V of the ship, s.
+/// Adds the predictions of a row; `length_over_speed` is L/V of the ship, s, on which IMO limits depend.
 pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow, length_over_speed: Option<f64>) {
     for figure in row.predicted.iter().flatten() {
         let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {

@@ -31,7 +31,8 @@ pub struct RecordSummary {
     /// Median over trials of the ratio of validation errors, this method over the first; `None` for the first
     /// method.
     pub ratio: Option<Statistic>,
-    /// Median over trials of the ratio of the validation errors of replays restarted every 60 s.
+    /// Median over trials of the ratio of the validation errors of replays restarted every 60 s; `None` for the first
+    /// method.
     pub window_ratio: Option<Statistic>,
     /// Number of fits that named each effect.
     pub named: BTreeMap<String, usize>,
@@ -88,7 +89,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
     }
 }
 
-/// Median of all values, with an interval for six groups or more.
+/// Median of all values, with an interval for six groups or more; `None` without values.
 fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
     let values = groups.concat();
     let median_of = |places: &[usize]| median(&mut places.iter().map(|&place| values[place]).collect::<Vec<f64>>());

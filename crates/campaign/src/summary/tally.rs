@@ -15,7 +15,7 @@ use crate::statistics::{
     BATCH_COUNT, ErrorSample, ErrorSums, NORMAL_QUANTILE_95, PairSums, Resamples, Statistic, wilson_share,
 };
 
-/// Reference method, if a study has it; otherwise the first.
+/// Label, or else id, of the reference method; in a study without it, the first method is the reference.
 const REFERENCE: &str = "output-error";
 
 /// Tally of rows, which are added in order, cell by cell.
@@ -278,12 +278,12 @@ impl MethodTally {
     }
 }
 
-/// Running sums of the estimates of K or of T: their errors, bounds and quoted intervals.
+/// Running sums of the estimates of K, T or K/T: their errors, bounds and quoted intervals.
 #[derive(Debug, Clone, Default)]
 struct IndexSums {
     sample: ErrorSample,
     sums: ErrorSums,
-    /// First estimate, and sums of the differences from it and of their squares.
+    /// First estimate, and sums of the differences from it and of their squares; `None` without an estimate.
     answers: Option<(f64, [f64; 2])>,
     /// Sum of the squared bounds, %², and their number.
     bounds: (f64, f64),

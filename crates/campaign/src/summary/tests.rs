@@ -63,7 +63,7 @@ fn figures_are_those_of_the_errors() {
     near(record.k.mad, 2.0);
     near(record.k.quantiles[1], -1.5);
     near(record.k.median_size, 2.0);
-    // Five of seven intervals of ± 2 % contain the truth; two have an end close to it, on either side.
+    // Five of seven intervals of ± 2 % contain the truth; two of these have an end at it, where rounding decides.
     let coverage = record.k.coverage.expect("quoted").value * 7.0;
     assert!((3.0..=5.0).contains(&coverage.round()), "{coverage}");
     near(record.t.coverage, 1.0);

@@ -54,11 +54,11 @@ pub struct TraceSummary {
     #[serde(rename = "clear")]
     pub clearly_separable: [u64; 2],
     /// Mean over the trials of the expected 2 ln Λ (twice the log-likelihood ratio) of the truth against the nearest
-    /// first-order response.
+    /// first-order response; `None` if no trial has one.
     pub expected: Option<f64>,
-    /// Mean coverage of the heading band: on the trial, and on the validation manoeuvre.
+    /// Mean coverage of the heading band, on the trial and on the validation manoeuvre; `None` without a band.
     pub band: [Option<f64>; 2],
-    /// Calibration of the probabilities of effects; empty for a hull.
+    /// Calibration of the probabilities of effects, by bins of the probability; all counts are 0 for a hull.
     pub calibration: [CalibrationBin; CALIBRATION_BIN_EDGES.len() - 1],
 }
 

@@ -9,7 +9,7 @@ use super::{Filter, GAIN_TOLERANCE, Reading, StateSensor, System, congruence, id
 pub struct Smoother<const N: usize> {
     /// Filter that gives the innovations.
     pub filter: Filter<N>,
-    /// Predicted covariance of the state of every gain, before the reading.
+    /// Predicted covariance of the state before the reading, for every gain.
     predicted: Vec<[[f64; N]; N]>,
 }
 
@@ -43,13 +43,15 @@ impl<const N: usize> Smoother<N> {
         self.filter.system.readings.iter().enumerate().map(step).collect()
     }
 
-    /// Innovations in units of their standard deviation; `forced(row)` is the state change by a known input before it.
+    /// Innovations in units of their standard deviation; `forced(row)` is the state change by a known input in the step
+    /// before the row.
     pub fn whitened(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<f64> {
         let weight = |row: usize| self.filter.weights[self.filter.gain_of[row] as usize];
         self.run(column, forced).iter().enumerate().map(|(row, (_, innovation))| innovation * weight(row)).collect()
     }
 
-    /// Smoothed state at every reading, x = x⁻ + P⁻ s with s the score of this and all later innovations.
+    /// Smoothed state at every reading, x = x⁻ + P⁻ s with the predicted state x⁻, its covariance P⁻ and the score s of
+    /// this and all later innovations; `forced` as in [`whitened`](Self::whitened).
     pub fn smoothed(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
         let mut states = self.run(column, forced);
         let mut score = [0.0; N];
@@ -71,7 +73,8 @@ impl<const N: usize> Smoother<N> {
         states.into_iter().map(|(state, _)| state).collect()
     }
 
-    /// Smoothed variance of one state at every reading, V = P⁻ − P⁻ N P⁻ with N the variance of the score.
+    /// Smoothed variance of one state at every reading: diagonal element of P⁻ − P⁻ Λ P⁻ with the predicted covariance
+    /// P⁻ and the covariance Λ of the score.
     pub fn variances(&self, state: usize) -> Vec<f64> {
         let mut information = [[0.0; N]; N];
         let mut variances = vec![0.0; self.filter.gain_of.len()];
@@ -82,7 +85,7 @@ impl<const N: usize> Smoother<N> {
             let StateSensor { state: first, second_state, .. } = self.filter.system.sensors[sensor];
             let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == second_state));
             let unit = identity::<N>();
-            // Transposed, since N = Aᵀ N A.
+            // Transpose of A = I − K H, with the gain K and the sensor H, because Λ becomes Aᵀ Λ A + Hᵀ H/S.
             let through: [[f64; N]; N] =
                 std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] - gain.gain[j] * seen(i)));
             information = congruence(&through, &information);

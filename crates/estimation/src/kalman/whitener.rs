@@ -19,7 +19,7 @@ pub struct Whitener {
     readings: Vec<Reading>,
     /// Index of the gain of every reading.
     gain_of: Vec<u32>,
-    /// Sum Σ log S over the readings.
+    /// Sum Σ log S over the readings, with the innovation variances S.
     pub log_variance: f64,
 }
 
@@ -32,7 +32,8 @@ struct WhiteningGain {
 }
 
 impl<const N: usize> Filter<N> {
-    /// Whitener of the filter, independent of the number of states at compile time.
+    /// Whitener with the gains of this filter of at most [`MAX_STATES`] states; the number of states is no part of its
+    /// type.
     pub fn into_whitener(self) -> Whitener {
         let wide =
             |row: &[f64; N]| -> [f64; MAX_STATES] { std::array::from_fn(|k| row.get(k).copied().unwrap_or(0.0)) };
@@ -66,7 +67,7 @@ impl Whitener {
         self.gain_of.iter().map(|&gain| self.gains[gain as usize].log_variance)
     }
 
-    /// Whitens columns in place.
+    /// Whitens columns in place, each with one value per reading.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         for columns in columns.chunks_mut(COLUMNS) {
             with_states!(self.states, N => match columns.len() {
@@ -76,7 +77,7 @@ impl Whitener {
         }
     }
 
-    /// Whitens interleaved columns: a row holds one reading of every column.
+    /// Whitens interleaved columns into `white`: a row holds one reading of every column.
     pub fn apply_to_rows(&self, rows: &[InterleavedRow], white: &mut Vec<InterleavedRow>) {
         white.resize(rows.len(), [0.0; COLUMNS]);
         let (whiteners, readings, out) = ([self], [rows], [&mut white[..]]);
@@ -86,7 +87,7 @@ impl Whitener {
         });
     }
 
-    /// Whitens the interleaved columns of two filters: `rows[k]` by `whiteners[k]`.
+    /// Whitens the interleaved columns of two filters: `rows[k]` by `whiteners[k]` into the k-th output.
     pub fn apply_pair(
         whiteners: [&Self; 2],
         rows: [&[InterleavedRow]; 2],

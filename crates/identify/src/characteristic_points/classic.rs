@@ -11,15 +11,20 @@ use estimation::least_squares::LeastSquares;
 
 /// Characteristic points of one trial that enter the solution.
 struct SelectedPoints<'a> {
+    /// Instants with r = 0.
     still: &'a [CharacteristicPoint],
+    /// Passages of the base course.
     crossings: Vec<CharacteristicPoint>,
 }
 
 /// Differences between two points: ψ(t) − ψ(s) + T [r(t) − r(s)] = K (rudder + δ_r duration).
 #[derive(Debug, Clone, Copy)]
 struct Interval {
+    /// Duration t − s, s.
     duration: f64,
+    /// Rudder integral ∫δ, rad s.
     rudder: f64,
+    /// Change of heading, rad.
     heading: f64,
     /// Yaw rate r at the end, rad/s.
     rate: f64,
@@ -35,7 +40,7 @@ impl Interval {
         }
     }
 
-    /// K (∫δ + δ_r Δt) − Δψ, which is T r.
+    /// K (∫δ + δ_r Δt) − Δψ, rad: T r for an interval that begins with r = 0.
     fn rate_moment(&self, gain: &GainFit) -> f64 {
         gain.gain * self.rudder + gain.gain_bias * self.duration - self.heading
     }
@@ -76,7 +81,7 @@ pub(super) fn identify(
     if rises.is_empty() {
         return Err(IdentifyError::TooFewPoints { kind: "passages of the base course", needed: 1, count: 0 });
     }
-    // The ratio of sums has less variance than the mean of ratios, because it weighs by r².
+    // The ratio of sums has less variance than the mean of ratios, because it weights them by r².
     let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
     Ok(PointsFit {
         parameters: [gain.gain, gain.gain_bias, time],
@@ -143,7 +148,8 @@ impl GainFit {
 }
 
 /// Covariance of the solution for independent errors of the points, which correlate successive differences: G Xᵀ Ω X G
-/// s² with Ω = tridiag(−1, 2, −1) in every trial and s² = rss / tr(M Ω), M the residual maker.
+/// s² with G = (XᵀX)⁻¹, Ω = tridiag(−1, 2, −1) in every trial and s² = rss / tr(M Ω), M the residual maker. `None`
+/// without degrees of freedom.
 fn difference_covariance(
     design: &DMatrix<f64>,
     solution: &LeastSquares,

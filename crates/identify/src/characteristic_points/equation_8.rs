@@ -22,8 +22,8 @@ struct Equations {
     ends: Vec<usize>,
 }
 
-/// Heading (rad) and yaw rate (rad/s) of a cubic through the rows within `half_width` of `centre`, evaluated at
-/// `instant`.
+/// Heading (rad) and yaw rate (rad/s) at `instant` of a cubic fitted to the rows within the half width of `centre`;
+/// `None` if there are fewer than five rows.
 fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2]> {
     let reach = trial.points.half_width * (1.0 + 1e-9);
     let time = &trial.samples.time;

@@ -10,9 +10,10 @@ use trial::zigzag::points;
 use crate::samples::Samples;
 use crate::savitzky_golay::local_polynomial;
 
-/// Maximum rudder amidships, as a share of the maximum rudder angle, and maximum departure of a heading on course, as a
-/// share of the maximum departure. In a zig-zag the rudder passes amidships only near the reversals, where the heading
-/// is far off course: both conditions together identify the approach.
+/// Maximum rudder amidships, as a share of the maximum rudder angle, and maximum distance of the mean heading on the
+/// approach from a given base course, as a share of half the range of the headings. In a zig-zag the rudder passes
+/// amidships only near the reversals, where the heading is far off course: both conditions together identify the
+/// approach.
 const APPROACH_SHARE: f64 = 0.2;
 
 /// Maximum number of window moves; an extremum that has not settled then keeps its first position.
@@ -28,9 +29,9 @@ pub enum BaseCourseOrigin {
     Given,
     /// Mean heading before the first execute.
     Approach,
-    /// No approach: heading 0 is used.
+    /// No approach, and 0 is in the middle half of the range of the headings: heading 0 is used.
     Zero,
-    /// No approach, and 0 is outside the swings: the middle of the headings is used.
+    /// No approach, and 0 is outside that half: the middle of the range is used.
     Middle,
 }
 
@@ -77,8 +78,8 @@ impl TrialPoints {
         }
     }
 
-    /// Finds the points of a record. `base` (rad) and `half_width` (s) are estimated from the record if not given, the
-    /// half width as the share `width_share` of half a period.
+    /// Finds the points of a record. `base` (rad) and `half_width` (s) are estimated from the record if they are
+    /// `None`, the half width as the share `width_share` of half a period, but at least three sampling intervals.
     pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
         let (lo, hi) = extremes(&samples.heading);
@@ -125,7 +126,8 @@ impl TrialPoints {
     }
 }
 
-/// Rows before the first execute, rudder amidships and heading on course.
+/// Rows before the first execute, with the rudder amidships and the heading on course; `None` if the record begins in
+/// the manoeuvre.
 fn approach(samples: &Samples, base: Option<f64>, [lo, hi]: [f64; 2]) -> Option<Range<usize>> {
     let largest = samples.rudder.iter().fold(0.0_f64, |largest, delta| largest.max(delta.abs()));
     let end = samples.rudder.iter().position(|delta| delta.abs() > APPROACH_SHARE * largest)?;
@@ -149,9 +151,9 @@ fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
 
 /// Vertex (s, rad) of the parabola through the rows within `half_width` of the vertex.
 ///
-/// The search starts at the maximum heading, which noise selects: a window there contains too many high values. Moving
-/// the window to its own vertex until it stays there removes this bias. `None` if the window leaves the neighbourhood
-/// of the start.
+/// The window of `start` is centred on the extreme reading, which noise selects, so that errors of one sign prevail
+/// in it. Moving the window to the vertex of its parabola until it stays there removes this bias. `None` if the window
+/// leaves the neighbourhood of the start or does not settle, or if the parabola bends away from the base course.
 fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option<(f64, f64)> {
     let mut vertex = start;
     for _ in 0..MAX_WINDOW_MOVES {

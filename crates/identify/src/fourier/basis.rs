@@ -34,7 +34,7 @@ struct OrthogonalPart {
     qr: QR<f64, Dyn, Dyn>,
 }
 
-/// Basis of a single series of `NestedBases`.
+/// Basis of a series with a fixed number of harmonics.
 #[derive(Debug, Clone)]
 pub struct Basis {
     harmonics: usize,
@@ -46,7 +46,7 @@ pub struct Basis {
 /// Projection of a signal on a [`Basis`]: coefficients in centred time and the residual.
 #[derive(Debug, Clone)]
 pub struct Projection {
-    /// Coefficients in the order 1, cos 1, sin 1, cos 2, …, in the time of the basis.
+    /// Coefficients in the order 1, cos 1, sin 1, cos 2, …, for time from the middle of the instants.
     pub coefficients: DVector<f64>,
     /// Signal minus its projection, one value per instant.
     pub residual: Vec<f64>,
@@ -125,7 +125,7 @@ impl NestedBases {
         rss
     }
 
-    /// Basis with the first `harmonics` harmonics, at least one if there are any.
+    /// Basis with the first `harmonics` harmonics: at most N, and at least 1 unless N is 0.
     pub fn basis(self, harmonics: usize) -> Basis {
         let triangle = |part: &OrthogonalPart| {
             let width = part.places(harmonics).len();
@@ -273,14 +273,14 @@ impl Basis {
         derivative
     }
 
-    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the second function of its
-    /// pair.
+    /// Moments (X D)ᵀy with the derivatives of the functions, from the [`moments`](Self::moments) Xᵀy: Dᵀ = −D, because
+    /// the derivative of a cosine is its sine and the reverse, with opposite signs.
     pub fn derivative_moments(&self, moments: &DVector<f64>) -> DVector<f64> {
         -self.derivative(moments)
     }
 
     /// Curve of a projection, with coefficients in the time of the record.
-    pub fn curve(&self, projection: &Projection) -> FourierSeries {
+    pub fn fourier_series(&self, projection: &Projection) -> FourierSeries {
         let (n, fundamental) = (self.harmonics, self.series.fundamental);
         let theta = &projection.coefficients;
         let (mut cosine, mut sine) = (Vec::with_capacity(n), Vec::with_capacity(n));
@@ -320,7 +320,7 @@ mod tests {
         let time: Vec<f64> = (0..90).map(|i| 3.0 * i as f64 + (i as f64).sin()).collect();
         let values: Vec<f64> = time.iter().map(|&t| signal(t)).collect();
         let basis = Basis::new(&time, 0.05, 3).expect("enough instants");
-        let curve = basis.curve(&basis.project(&values));
+        let curve = basis.fourier_series(&basis.project(&values));
         assert_relative_eq!(curve.mean, 3.0, max_relative = 1e-10);
         assert_relative_eq!(curve.cosine[0], 2.0, max_relative = 1e-10);
         assert_relative_eq!(curve.sine[1], -1.5, max_relative = 1e-10);
@@ -357,7 +357,7 @@ mod tests {
             let projection = basis.project(&values);
             let left = basis.moments(&projection.residual);
             assert_abs_diff_eq!(left.norm(), 0.0, epsilon = 1e-11);
-            let curve = basis.curve(&projection);
+            let curve = basis.fourier_series(&projection);
             let rate = basis.derivative(&projection.coefficients);
             let (fitted, rates) = (basis.values(&projection.coefficients), basis.values(&rate));
             let accelerations = basis.values(&basis.derivative(&rate));

@@ -15,13 +15,13 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-7;
 pub struct FoldedRows {
     /// Time u from the middle, s.
     pub time: Vec<f64>,
-    /// Even part of the signal.
+    /// Factor of fₑ in Σ y f: the signal, or its sum at u and −u if the row has its mirror image.
     pub even: Vec<f64>,
-    /// Odd part of the signal; see [`Self::even`].
+    /// Factor of fₒ in Σ y f: the signal with the sign of its side, or its difference between u and −u.
     pub odd: Vec<f64>,
-    /// Even part of the number of rows.
+    /// Factor of fₑ in Σ f: number of rows at ±u.
     pub weight: Vec<f64>,
-    /// Odd part of the number of rows; see [`Self::weight`].
+    /// Factor of fₒ in Σ f: sign of the side of a single row, zero for a pair.
     pub skew: Vec<f64>,
     /// `true` if every row has its mirror image, so that `skew` is zero.
     pub is_symmetric: bool,

@@ -43,7 +43,8 @@ pub struct ChosenFundamental {
     pub evaluations: usize,
 }
 
-/// Minimum fundamental of a scan, periods per record: below it 17 columns are one polynomial to rounding.
+/// Minimum fundamental of a search, in periods per record: below it the 17 columns of eight harmonics span, to
+/// rounding, the polynomials of degree 16.
 const MIN_PERIODS: f64 = 0.35;
 
 /// Maximum fundamental of a scan, relative to the peak of the transform.
@@ -56,7 +57,7 @@ const MIN_REACH: f64 = 1.25;
 /// record.
 const SCAN_STEP: f64 = 0.3;
 
-/// Step of a descent from a start, as the same share.
+/// Step of a descent from a start, as a share of π/(N T_rec).
 const DESCENT_STEP: f64 = 0.15;
 
 impl Fundamental {
@@ -97,7 +98,8 @@ fn search_from(starts: &[f64], time: &[f64], heading: &[f64], harmonics: usize) 
     ChosenFundamental { evaluations: profile.evaluations, ..choice }
 }
 
-/// Local minimum downhill from `from`, in steps too small to leave a basin, then refined.
+/// RSS and fundamental of the local minimum downhill from `from` (rad/s), in steps too small to leave a basin, then
+/// refined.
 fn descend(profile: &mut Profile, from: f64, duration: f64, harmonics: usize) -> (f64, ChosenFundamental) {
     let step = DESCENT_STEP * PI / (harmonics as f64 * duration);
     let (floor, ceiling) = (MIN_PERIODS * TAU / duration, from.max(TAU / duration) * 2.0);
@@ -124,8 +126,9 @@ fn descend(profile: &mut Profile, from: f64, duration: f64, harmonics: usize) ->
     (rss, ChosenFundamental { fundamental, stop: StopReason::Converged, evaluations: 0 })
 }
 
-/// Minimum of RSS between `lo` and `hi` from an inner point `middle` with RSS `value`: Brent (1973), parabolas, with
-/// golden sections if they fail. Converges at a relative step of 1e-8, below which RSS is flat to rounding.
+/// Fundamental (rad/s) and value of the minimum of RSS between `lo` and `hi`, from an inner point `middle` with RSS
+/// `value`: Brent (1973), parabolas, with golden sections if they fail. Converges at a relative step of 1e-8, below
+/// which RSS is flat to rounding.
 fn close_in(profile: &mut Profile, lo: f64, middle: f64, hi: f64, value: f64) -> (f64, f64) {
     const GOLDEN: f64 = 0.381_966_011_250_105;
     let (mut lo, mut hi) = (lo, hi);
@@ -216,11 +219,12 @@ pub fn spectral_peak(time: &[f64], heading: &[f64]) -> f64 {
     TAU * bin as f64 / (rows as f64 * step)
 }
 
-/// Median time between every other crossing of the heading through its mean, s; twice the median time between crossings
-/// if there are only two.
+/// Median time between every other crossing of the heading through its mean, s; twice the time between the crossings if
+/// there are only two.
 ///
-/// A crossing counts after the heading has passed a quarter of its amplitude on the opposite side, so that noise near
-/// zero makes no crossing; its time is the middle between the first and the last change of sign.
+/// A crossing counts if the heading departs from its mean by a quarter of its amplitude on the side before and on the
+/// side after, so that noise near the mean makes no crossing; its time is the middle between the first and the last
+/// change of sign.
 ///
 /// Fails with [`IdentifyError::TooFewPoints`] if there are fewer than two crossings.
 pub fn zero_crossing_period(time: &[f64], heading: &[f64]) -> Result<f64, IdentifyError> {

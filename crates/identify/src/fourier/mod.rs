@@ -68,7 +68,7 @@ pub fn fit(
     let choice = fundamental.choose(time, heading, harmonics)?;
     let basis = Basis::new(time, choice.fundamental, harmonics)?;
     let projection = basis.project(heading);
-    let curve = basis.curve(&projection);
+    let curve = basis.fourier_series(&projection);
     Ok(FittedSeries { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
 }
 

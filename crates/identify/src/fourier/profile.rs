@@ -42,7 +42,7 @@ pub struct Profile {
     pub evaluations: usize,
 }
 
-/// Sums over nodes with one Chebyshev polynomial Tₖ(ξ), lane by lane.
+/// Sums over the folded rows with one Chebyshev polynomial Tₖ(ξ), lane by lane.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     /// Σ Tₖ.
@@ -214,7 +214,7 @@ fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
     [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
 }
 
-/// Sums over `folded_rows` with Tₖ(ξ) for k ≤ 2N; the sums of the signal stop at the harmonics.
+/// Sums over the folded rows with Tₖ(ξ) for k ≤ 2N; those with the signal only for k ≤ N.
 fn accumulate(nodes: &FoldedRows, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
     sums.fill(Sums::default());
     for start in (0..nodes.time.len()).step_by(LANES) {

@@ -45,7 +45,7 @@ const ONE: usize = 3;
 struct Block {
     /// Σ f ∂r/∂θ and Σ f ∂r'/∂θ over the equations, θ the 2N+1 coefficients, for f = r, r', δ and 1.
     moments: [[DVector<f64>; 4]; 2],
-    /// Covariance of the coefficients, (2N+1)².
+    /// Covariance of the coefficients, (2N+1) × (2N+1), rad².
     covariance: DMatrix<f64>,
 }
 

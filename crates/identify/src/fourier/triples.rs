@@ -1,9 +1,9 @@
 //! Solution for K, T and δ_r from triples of instants: T r'ᵢ + rᵢ = K (δᵢ + δ_r), i = 1, 2, 3, eq. (10) of Ge, Hu, Yin
 //! and Sun.
 //!
-//! The determinant of the three equations is the area of the triangle that the instants make in the plane of rudder and
-//! r': zero for three instants with one rudder angle, small for a thin triangle, and then the error of r' dominates the
-//! estimate. This module samples triples and solves them; the method combines the estimates.
+//! The determinant of the three equations is proportional to the area of the triangle that the instants make in the
+//! plane of rudder and r': zero for three instants with one rudder angle, small for a thin triangle, and then the error
+//! of r' dominates the estimate. This module samples triples and solves them; the method combines the estimates.
 
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -116,7 +116,7 @@ pub fn sample_triples(
 }
 
 /// Parameters from three instants; `None` if they lie on a line in the plane of rudder and r' (to rounding), both
-/// measured in `scale` (standard deviations of r' and δ).
+/// measured in `scale` (standard deviations of r' and δ), or if K is zero.
 pub fn solve(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
     let [first, second, third] = triple;
     // Differences against the third instant eliminate K δ_r.

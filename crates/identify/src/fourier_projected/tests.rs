@@ -1,4 +1,4 @@
-//! Anchors, bias, calibration of the covariance and refusals of the corrected Fourier method.
+//! Scale, order, calibration of the covariance and refusals of the corrected Fourier method.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 

@@ -39,7 +39,7 @@ pub enum HullFitError {
     StartsNearRest {
         /// Name of the record.
         trial: String,
-        /// Speed in the first row, relative to the approach speed.
+        /// Surge velocity in the first row, relative to the approach speed.
         share: f64,
     },
     /// No coefficients near the prior can be replayed.

@@ -65,7 +65,7 @@ impl HullFormPrior {
     }
 
     /// Priors of all forms that can be fitted to a ship, updated with earlier trials. Missing particulars are taken
-    /// from the earlier ships.
+    /// from the earlier ships. Without particulars the earlier trials have no effect.
     pub fn candidates(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
         let particulars = particulars
             .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.with_missing_from(&trial.particulars)));

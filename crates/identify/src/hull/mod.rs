@@ -7,11 +7,12 @@
 //! J = 1/n Σ_records (T U₀/L) [ē²/σ² of the whole replay + ē²/σ² of the windows + ē²/σ² of the recorded speed]
 //!   + (θ − μ)ᵀ Λ (θ − μ) + ((r L/U − 0.75)/0.25)² + ((−v/(r L) − 0.35)/0.12)² in a turn with 35° of rudder
 //!
-//! with the standard deviations of [`ResidualDeviations`], which describe the error of the form and not of a sensor:
-//! a hull of ten or twenty coefficients only approximates the ship. They start large and follow the residual of every
-//! record, down to 1°, 0.2° and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw
-//! rate is not fitted in addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it
-//! changed the heading error on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
+//! with the duration T of a record, mean squares ē² of its residuals, and the standard deviations σ of
+//! [`ResidualDeviations`], which describe the error of the form and not of a sensor: a hull of ten or twenty
+//! coefficients only approximates the ship. They start large and follow the residual of every record, down to 1°, 0.2°
+//! and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw rate is not fitted in
+//! addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the heading error
+//! on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
 //!
 //! The n records of a ship weigh as much as a single record of their mean length: the error of the form is similar in
 //! all records. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to zig-zags
@@ -101,8 +102,8 @@ pub struct HullEstimate {
 
 /// Fits a hull to records of one ship, with a prior of the coefficients.
 ///
-/// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart, an
-/// impossible duration or a start near rest, or if no coefficients near the prior can be replayed.
+/// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart,
+/// too long a duration or a start near rest, or if no coefficients near the prior can be replayed.
 pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, HullFitError> {
     let (reference, tracks) = tracks(trials)?;
     let form = &prior.form;
@@ -150,10 +151,11 @@ fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitEr
     Ok((reference, tracks))
 }
 
-/// Maximum residual of a member, relative to the smallest residual of all hulls and another model.
+/// Maximum residual of a supported hull, relative to the smallest residual of all hulls and another model.
 const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
-/// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials.
+/// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials; a form whose fit
+/// fails is left out.
 pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
     let priors = HullFormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     priors.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
@@ -178,7 +180,7 @@ impl HullEstimate {
 
     /// Variance of the replayed heading of a record over time (s), rad²: from the covariance of the coefficients and
     /// from the mean square residual of the fit. `None` for a record that cannot be replayed, or if the standard
-    /// deviation exceeds half a turn, beyond the range of a linear law.
+    /// deviation exceeds half a turn, beyond which the linear propagation does not hold.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::from_trial(trial, &self.reference).ok()?;
         let [time, mut variance] = heading_variances(&self.prior, &track, self.values.as_slice(), &self.covariance)?;

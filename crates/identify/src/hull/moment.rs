@@ -13,13 +13,13 @@ use super::track::HullTrack;
 /// Correlation time, in L/U₀: the error of a form changes with the manoeuvre and not with a gust.
 const CORRELATION_TIME_LENGTHS: f64 = 2.0;
 
-/// Standard deviation of the first trial moments, as a rudder angle, rad.
+/// Standard deviation of the first simulated moments, as a rudder angle, rad.
 const FIRST_DEVIATION_RAD: f64 = 5e-3;
 
-/// Number of rescalings of the trial moments: the departure of a hull is nearly linear in them.
+/// Number of rescalings of the simulated moments: the departure of a hull is nearly linear in them.
 const SCALINGS: usize = 2;
 
-/// Number of trial moments drawn per record.
+/// Number of moments simulated per record.
 const DRAWS: u64 = 6;
 
 /// Seed of the first draw.
@@ -36,7 +36,8 @@ pub struct MisfitMoment {
 
 impl MisfitMoment {
     /// Random moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
-    /// L/U₀ by the residuals of the records, `misfits`.
+    /// L/U₀ by the residuals of the records, `misfits`. The deviation is zero if a simulated departure is zero or not
+    /// finite.
     pub(super) fn from_misfits(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
         let hull = hull.to_real::<Dual<1>>();
         let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;
@@ -54,7 +55,7 @@ impl MisfitMoment {
     }
 }
 
-/// Mean square heading error in windows of a replay under a random moment, computed as for a record.
+/// Mean square heading error (rad²) in windows of a replay under a random moment, computed as for a record.
 fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed: u64) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut disturbed = track.clone();
@@ -70,6 +71,6 @@ fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed:
     let rows = replay_rows(hull, &disturbed, track.whole, start).rows;
     let heading = rows.iter().zip(&track.heading);
     let heading = heading.map(|(row, read)| if read.is_finite() { row[0].value } else { f64::NAN }).collect();
-    let mut rates = vec![0.0; track.cuts.len() - 1];
+    let mut rates = vec![0.0; track.window_bounds.len() - 1];
     window_mean_square(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
 }

@@ -12,7 +12,7 @@ use super::replayed::{ReplayedWindow, replay_rows};
 use super::track::HullTrack;
 use super::turn::HardTurn;
 
-/// Number of derivatives: the coefficients of the largest form, the yaw rate at the start, and one spare.
+/// Number of derivatives: with respect to the 25 coefficients of the largest form, and to the yaw rate at the start.
 const DIRECTIONS: usize = 26;
 
 /// Maximum number of steps of the search for the initial yaw rate of a window.
@@ -24,7 +24,7 @@ const STEP_SHARES: [f64; 4] = [1.0, 0.4, 0.16, 0.06];
 /// Minimum relative gain of a step; below it that search ends.
 const MIN_GAIN: f64 = 1e-6;
 
-/// Standard deviations of the residuals of a hull, which weigh the kinds of reading: even the best form leaves an
+/// Standard deviations of the residuals of a hull, which weight the kinds of reading: even the best form leaves an
 /// error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualDeviations {
@@ -32,7 +32,7 @@ pub struct ResidualDeviations {
     pub whole: f64,
     /// Standard deviation of the heading in a window, rad.
     pub window: f64,
-    /// Standard deviation of the speed, over U₀.
+    /// Standard deviation of the speed, in units of U₀.
     pub speed: f64,
 }
 
@@ -43,7 +43,8 @@ const MIN_DEVIATIONS: ResidualDeviations = ResidualDeviations { whole: 1.0 * DEG
 const FIRST_DEVIATIONS: ResidualDeviations =
     ResidualDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
 
-/// Mean square residuals of a record, and the initial yaw rate of the whole replay, U₀/L.
+/// Mean square residuals of a record (headings in rad², speed in units of U₀²), and the initial yaw rate of the whole
+/// replay, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Misfit {
     pub whole: f64,
@@ -74,8 +75,11 @@ pub(super) struct HullObjective<'a> {
 struct WindowFit {
     square: f64,
     step: f64,
+    /// (u, v, r) after the window.
     end: [f64; 3],
+    /// (ψ, u, v) in every row.
     rows: Vec<[f64; 3]>,
+    /// Number of headings.
     read: usize,
 }
 
@@ -126,18 +130,19 @@ fn window_from_best_rate(
     now
 }
 
-/// Replays all windows of a record, each from its best yaw rate; calls `visit` with every window.
+/// Replays all windows of a record, each from its best yaw rate; calls `visit` with every window. Unless `is_begun`,
+/// the search of a window starts at the yaw rate at the end of the window before.
 fn replay_windows(
     hull: &PrimeHull<Dual<1>>,
     track: &HullTrack,
-    cuts: &[usize],
+    window_bounds: &[usize],
     rates: &mut [f64],
     is_begun: bool,
     mut visit: impl FnMut(&WindowFit),
 ) {
     let mut start = track.start;
     let mut before = rates[0];
-    for (ends, rate) in cuts.windows(2).zip(rates) {
+    for (ends, rate) in window_bounds.windows(2).zip(rates) {
         if !is_begun {
             *rate = before;
         }
@@ -148,7 +153,7 @@ fn replay_windows(
     }
 }
 
-/// Mean square heading residual of the windows of a record; `rates` are the yaw rates at their starts.
+/// Mean square heading residual of the windows of a record, rad²; `rates` are the yaw rates at their starts, U₀/L.
 pub(super) fn window_mean_square(
     hull: &PrimeHull<Dual<1>>,
     track: &HullTrack,
@@ -156,7 +161,7 @@ pub(super) fn window_mean_square(
     is_begun: bool,
 ) -> f64 {
     let (mut square, mut read) = (0.0, 0);
-    replay_windows(hull, track, &track.cuts, rates, is_begun, |replay| {
+    replay_windows(hull, track, &track.window_bounds, rates, is_begun, |replay| {
         (square, read) = (square + replay.square, read + replay.read);
     });
     square / read.max(1) as f64
@@ -165,7 +170,7 @@ pub(super) fn window_mean_square(
 impl<'a> HullObjective<'a> {
     pub fn new(prior: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
         assert!(prior.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
-        let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.cuts.len() - 1] };
+        let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.window_bounds.len() - 1] };
         let starts = tracks.iter().map(starts).collect();
         let deviations = vec![FIRST_DEVIATIONS; tracks.len()];
         Self { prior, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
@@ -258,25 +263,26 @@ impl Objective for HullObjective<'_> {
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
             let speed_weight = Some(weight(speed, track.time.len() as f64));
             add(normal, &hull, track, &track.whole, &starts.whole, weight(whole, read), speed_weight);
-            add(normal, &hull, track, &track.cuts, &starts.windows, weight(window, read), None);
+            add(normal, &hull, track, &track.window_bounds, &starts.windows, weight(window, read), None);
         }
         value
     }
 }
 
-/// Adds the normal equations of the windows of a record; `speed_weight` is the weight of a speed reading.
+/// Adds the normal equations of the windows of a record; `weight` is the weight of a heading and `speed_weight` of a
+/// speed, `None` without speeds.
 fn add(
     normal: &mut NormalEquations,
     hull: &PrimeHull<Dual<DIRECTIONS>>,
     track: &HullTrack,
-    cuts: &[usize],
+    window_bounds: &[usize],
     rates: &[f64],
     weight: f64,
     speed_weight: Option<f64>,
 ) {
     let unknowns = normal.gradient.len();
     let mut start = track.start.map(Dual::from);
-    for (ends, &rate) in cuts.windows(2).zip(rates) {
+    for (ends, &rate) in window_bounds.windows(2).zip(rates) {
         // Surge and sway at this start do not depend on its yaw rate.
         start.iter_mut().for_each(|velocity| velocity.derivatives[unknowns] = 0.0);
         let variable = Dual::variable(rate, unknowns, 1.0);
@@ -297,8 +303,9 @@ fn add(
     }
 }
 
-/// Derivatives of the recorded headings with respect to the coefficients at the best initial yaw rate, with the
-/// residuals as last column; and the derivatives of the yaw rate.
+/// Derivatives of the replayed headings, in the rows with a recorded heading, with respect to the coefficients, at the
+/// best initial heading and yaw rate; the last column holds the residuals, the column before it the derivatives with
+/// respect to the initial yaw rate. Also returns the derivatives of the best initial yaw rate.
 fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: usize) -> (DMatrix<f64>, Vec<f64>) {
     let read: Vec<usize> = (0..rows.len()).filter(|&row| measured[row].is_finite()).collect();
     let heading = |i: usize, j: usize| {
@@ -320,8 +327,8 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
     (columns, shares)
 }
 
-/// Times, in L/U₀, and heading variances of a whole replay, rad², for a covariance of the coefficients. `None` if the
-/// coefficients are not valid.
+/// Times, in L/U₀, and heading variances, rad², of a whole replay in the rows with a heading, for a covariance of the
+/// coefficients. `None` if the coefficients are not valid.
 pub(super) fn heading_variances(
     prior: &HullFormPrior,
     track: &HullTrack,
@@ -344,7 +351,8 @@ pub(super) fn heading_variances(
     Some([read.map(|(time, _)| *time).collect(), variance])
 }
 
-/// Adds XᵀX and Xᵀe of the columns X before the column e = `error`.
+/// Adds `weight` XᵀX and `weight` Xᵀe, with the residuals e in the column `error` and the derivatives X in the columns
+/// before it, without the column directly before it, which belongs to the initial yaw rate.
 fn add_squares(normal: &mut NormalEquations, columns: &DMatrix<f64>, error: usize, weight: f64) {
     let regressors = columns.columns(0, error - 1);
     normal.matrix.gemm_tr(weight, &regressors, &regressors, 1.0);

@@ -11,7 +11,7 @@ const MAX_STEP_LENGTHS: f64 = 0.08;
 /// Replay of a window: rows of states, each (ψ, u, v).
 pub(super) struct ReplayedWindow<R> {
     pub rows: Vec<[R; 3]>,
-    /// State at the first row after the window.
+    /// State (u, v, r) at the first row after the window, or at the last row of the record.
     pub end: [R; 3],
 }
 

@@ -27,7 +27,7 @@ pub struct HullReference {
     pub length: f64,
     /// Approach speed U₀, m/s.
     pub speed: f64,
-    /// Rate of the propeller at that speed, 1/s, if it was recorded.
+    /// Rate of the propeller at that speed, 1/s; `None` if it was not recorded.
     pub propeller: Option<f64>,
 }
 
@@ -49,6 +49,7 @@ impl HullReference {
 /// Record in units of L and U₀.
 #[derive(Debug, Clone)]
 pub(super) struct HullTrack {
+    /// Time, L/U₀.
     pub time: Vec<f64>,
     /// L/U₀, s.
     pub second: f64,
@@ -56,18 +57,18 @@ pub(super) struct HullTrack {
     pub heading: Vec<f64>,
     /// Rudder angle, rad.
     pub rudder: Vec<f64>,
-    /// Propeller rate relative to the approach.
+    /// Propeller rate relative to the rate at approach speed.
     pub n_ratio: Vec<f64>,
     /// Yaw moment as rudder angle, rad: zero for a record.
     pub moment: Vec<f64>,
-    /// Accelerations of the relative wind over Y_w, if it was recorded: surge, sway and yaw.
+    /// Surge, sway and yaw accelerations by the relative wind, divided by Y_w; `None` without a recorded wind.
     pub wind: Option<[Vec<f64>; 3]>,
-    /// Speed, over U₀, if it was recorded or follows from positions.
+    /// Speed, in units of U₀; `None` if it was not recorded and does not follow from positions.
     pub speed: Option<Vec<f64>>,
-    /// Surge and sway velocity in the first row.
+    /// Surge and sway velocity in the first row, in units of U₀.
     pub start: [f64; 2],
     /// First rows of the windows, and the number of rows.
-    pub cuts: Vec<usize>,
+    pub window_bounds: Vec<usize>,
     /// First row and number of rows of the record, as a single window.
     pub whole: [usize; 2],
 }
@@ -101,7 +102,7 @@ impl HullTrack {
             n_ratio: vec![1.0; 2],
             moment: vec![0.0; 2],
             wind: None,
-            cuts: vec![0, 2],
+            window_bounds: vec![0, 2],
             whole: [0, 2],
             start: [1.0, 0.0],
             second: 1.0,
@@ -152,7 +153,7 @@ impl HullTrack {
             n_ratio: n_ratio.unwrap_or_else(|| vec![1.0; count]),
             moment: vec![0.0; count],
             wind,
-            cuts: cuts(&time),
+            window_bounds: window_bounds(&time),
             whole: [0, count],
             start: [surge, drift],
             second,
@@ -167,8 +168,8 @@ impl HullTrack {
     }
 }
 
-/// Speed over ground of every row: the distance between the first and the last position within half a [`SPEED_BASE`] of
-/// it, over the time between them. NaN with fewer than two positions.
+/// Speed over ground in every row: the distance between the first and the last position within half a [`SPEED_BASE`] of
+/// the row, divided by the time between them (L/U₀). NaN with fewer than two positions.
 ///
 /// It includes the current. A usual current is below 0.1 U₀, the minimum deviation of a speed; with a stronger current
 /// the replay begins at a wrong speed.
@@ -187,15 +188,15 @@ fn over_ground(time: &[f64], north: &[f64], east: &[f64]) -> Vec<f64> {
 
 /// First rows of successive windows, and the number of rows; a remainder of less than half a window is part of the
 /// window before.
-fn cuts(time: &[f64]) -> Vec<usize> {
-    let mut cuts = vec![0];
+fn window_bounds(time: &[f64]) -> Vec<usize> {
+    let mut window_bounds = vec![0];
     let mut from = 0;
     while time[time.len() - 1] >= time[from] + 1.5 * WINDOW {
         from = time.partition_point(|t| *t < time[from] + WINDOW);
-        cuts.push(from);
+        window_bounds.push(from);
     }
-    cuts.push(time.len());
-    cuts
+    window_bounds.push(time.len());
+    window_bounds
 }
 
 /// Mean of the finite values; NaN without any.

@@ -17,14 +17,14 @@ const DURATION_LENGTHS: f64 = 24.0;
 /// Mean and standard deviation of r L/U in the turn.
 ///
 /// Ships have tactical diameters of 2.5 L to 5 L (the limit of IMO MSC.137(76)), and steady turns of about 0.8 of that:
-/// r L/U of 0.5 to 1.0. The hulls of this project lie between 0.29 (Mariner) and 1.14 (SEIUN-like, in part estimated),
-/// so half of that range is the standard deviation.
+/// r L/U of 0.5 to 1.0. The published hulls of the `ship` crate lie between 0.29 (Mariner) and 1.14 (SEIUN-like, in
+/// part estimated), so the standard deviation is half the width of the range of ships.
 const CURVATURE: [f64; 2] = [0.75, 0.25];
 
 /// Mean and standard deviation of −v/r in the turn, L: the distance of the pivot point ahead of midship.
 ///
 /// Shiphandlers place it a quarter to a third of the length abaft the stem, 0.17 L to 0.25 L ahead of midship; the five
-/// hulls of this project turn about points 0.24 L (SEIUN-like) to 0.42 L (Mariner) ahead.
+/// published hulls of the `ship` crate turn about points 0.24 L (SEIUN-like) to 0.42 L (Mariner) ahead.
 const PIVOT: [f64; 2] = [0.35, 0.12];
 
 /// Turns with the rudder put over to either side and held.

@@ -7,9 +7,10 @@ use super::conflict::PriorCheck;
 use super::form_prior::{EarlierHull, HullFormPrior};
 
 /// Hull estimate updated with the estimates of earlier trials that it does not include yet, and the prior check of
-/// both; `None` if the earlier trials have no information on its form.
+/// both; `None` if the earlier trials have no information on its form. The check is `None` if the fitted
+/// hull adds no information to the prior with the earlier trials.
 ///
-/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in [`HullFormPrior`]. Both are treated
+/// Λ = C⁻¹ + Σ D₁/f², Λ θ = C⁻¹ θ̂ + Σ (h₁ + D₁ s)/f², with D₁, h₁, s and f as in `form_prior`. Both are treated
 /// as normal laws: if they are far apart, a fit with the earlier trials as prior is better.
 pub fn merge_with_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Option<(EarlierHull, Option<PriorCheck>)> {
     let is_same_form = |form: &HullForm| form.as_str() == fitted.form.as_str();

@@ -11,7 +11,7 @@ use crate::samples::Samples;
 /// Number of shared parameters a, b, b δ_r.
 pub(super) const SHARED_PARAMETERS: usize = 3;
 
-/// Number of their columns and the heading.
+/// Number of columns: one per shared parameter, and the heading.
 const WIDTH: usize = SHARED_PARAMETERS + 1;
 
 /// Stretch without a gap: times and columns of its equations.
@@ -93,11 +93,12 @@ pub(super) struct Solution {
     pub(super) parameters: Vector3<f64>,
     /// (XᵀX)⁻¹ of the projected columns.
     pub(super) inverse: Matrix3<f64>,
+    /// Condition number, as in [`IntegralLeastSquares`](super::IntegralLeastSquares).
     pub(super) condition: f64,
 }
 
 impl Solution {
-    /// Solution of the equations; the rows of the pieces stay projected.
+    /// Solution of the equations; the columns of the pieces stay projected.
     pub(super) fn from_stretches(pieces: &mut [IntegratedStretch], max_condition: f64) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {

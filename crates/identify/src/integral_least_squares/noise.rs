@@ -82,8 +82,8 @@ fn heading_noise(piece: &IntegratedStretch, solution: &Solution) -> Vec<f64> {
 /// Derivatives z of Xᵀe with respect to the noise of each heading, one column per shared parameter, for e = n + a ∫n by
 /// the trapezoidal rule.
 ///
-/// A heading enters its own equation with weight 1 + a h/2 and every later equation with a (h + h')/2, with h and h'
-/// the intervals before and after it; hence one backward pass with the sum of the later columns.
+/// A heading enters the equation of its row with weight 1 + a h/2 and every later equation with a (h + h')/2, with h
+/// and h' the intervals before and after it; hence one backward pass with the sum of the later columns.
 fn influences(piece: &IntegratedStretch, solution: &Solution) -> [Vec<f64>; SHARED_PARAMETERS] {
     let half_a = 0.5 * solution.parameters[0];
     let [x0, x1, x2, _] = &piece.columns;

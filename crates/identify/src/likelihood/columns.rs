@@ -23,7 +23,8 @@ impl MotionColumns {
         [&mut self.homogeneous, &mut self.rudder, &mut self.constant]
     }
 
-    /// Columns of zeros; `rate` is the row and the value of the homogeneous yaw rate at the anchor, if there are rates.
+    /// Sets all columns to zero; `rate` is the row of the anchor and the homogeneous yaw rate there, `None` without yaw
+    /// rates.
     pub(super) fn reset(&mut self, rows: usize, rate: Option<(usize, f64)>) {
         self.headings_mut().into_iter().for_each(|column| *column = vec![0.0; rows]);
         if let Some((anchor, rate)) = rate {

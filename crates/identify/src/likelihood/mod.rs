@@ -3,8 +3,8 @@
 //! States are heading ψ, yaw rate r and their disturbances: ψ' = r, r' = −a r + b (δ + δ_r) + m + w, with a = 1/T and b
 //! = K/T. The yaw moment (as acceleration) is absent, white (w of spectral density q²), an Ornstein–Uhlenbeck process
 //! m' = −m/τ + white of density 2q²/τ, or a random walk m' = white of density q². The recorded rudder, linear between
-//! its rows, may have an independent error in every row. The compass error is white, or of first order in time with its
-//! own correlation time; the rate-gyro error is white.
+//! its rows, may have an independent error in every row. The compass error is white, or of first order in time with a
+//! separate correlation time; the rate-gyro error is white.
 //!
 //! All noise enters linearly, so gains and variances of the Kalman filter do not depend on the readings: the filter is
 //! a linear map that whitens residual and sensitivities, and −2 log L = Σ log 2πS + Σ ν²/S with innovations ν and their

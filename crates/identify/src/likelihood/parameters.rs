@@ -56,7 +56,8 @@ impl NoiseVector {
         }
     }
 
-    /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
+    /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad; with
+    /// `gyro` it includes the rate-gyro error.
     pub fn to_model(&self, K_over_T: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
         let has_moment = self.moment != MomentKind::None;
@@ -75,7 +76,7 @@ impl NoiseVector {
         }
     }
 
-    /// Indices of the active entries.
+    /// Indices of the active entries; `gyro` is `true` if the readings include a yaw rate.
     pub fn active_entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
         let active = [
             self.moment != MomentKind::None,
@@ -111,11 +112,11 @@ pub struct NoiseParameters {
     pub moment: MomentKind,
     /// Level q/σ of the moment.
     pub level: f64,
-    /// Rate 1/τ of the moment, 1/s.
+    /// Rate 1/τ of an Ornstein–Uhlenbeck moment, 1/s; 0 for other moments.
     pub rate: f64,
-    /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s².
+    /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s²; `None` without a rudder error.
     pub rudder: Option<f64>,
-    /// Inverse correlation time of the compass error, 1/s.
+    /// Inverse correlation time of the compass error, 1/s; `None` for a white error.
     pub compass_rate: Option<f64>,
     /// Rate-gyro error σ_r/σ, 1/s.
     pub gyro: f64,
@@ -134,12 +135,12 @@ impl NoiseParameters {
             + usize::from(self.compass_rate.is_some())
     }
 
-    /// Index of the rudder error among the states.
+    /// Index of the rudder error among the states; `None` without a rudder error.
     pub fn rudder_state(&self) -> Option<usize> {
         self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
     }
 
-    /// Index of the compass error among the states: the last.
+    /// Index of the compass error among the states: the last; `None` for a white error, which is no state.
     pub fn compass_state(&self) -> Option<usize> {
         self.compass_rate.map(|_| self.states() - 1)
     }

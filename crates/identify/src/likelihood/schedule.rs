@@ -18,7 +18,7 @@ pub struct ReadingInterval {
 }
 
 impl ReadingInterval {
-    /// Duration of the span, s.
+    /// Duration of the interval, s.
     pub fn duration(&self) -> f64 {
         self.pieces.iter().sum()
     }
@@ -31,7 +31,7 @@ impl ReadingInterval {
 /// Sequence of the compass and rate-gyro readings of a record, with the time spans between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
-    /// Kinds of steps.
+    /// Distinct intervals between readings, which the readings refer to by index.
     pub spans: Vec<ReadingInterval>,
     /// Readings in order.
     pub readings: Vec<Reading>,
@@ -41,7 +41,7 @@ pub struct Schedule {
 const MAX_RECENT_KINDS: usize = 16;
 
 impl Schedule {
-    /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
+    /// Readings of a track; with `by_row` an interval between readings is divided at the rows of the rudder in it.
     pub fn new(track: &Track, by_row: bool) -> Self {
         let time = &track.time;
         let mut schedule = Self { spans: Vec::new(), readings: Vec::new() };

@@ -68,7 +68,7 @@ pub struct TrackStep {
     pub duration: f64,
     /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
-    /// Corner of the rudder within the step.
+    /// Corner of the rudder within the step; `None` for a rudder that is linear over the step.
     pub bend: Option<RudderCorner>,
 }
 
@@ -192,7 +192,7 @@ impl Track {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
-    /// Steps away from the anchor.
+    /// Steps away from the anchor, which is the last row if `backward`.
     #[inline(always)]
     pub fn steps(&self, backward: bool) -> impl Iterator<Item = TrackStep> {
         let (rows, count) = (self.intervals.len(), self.corners.len());

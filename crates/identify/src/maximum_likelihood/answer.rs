@@ -29,7 +29,7 @@ const DIFFERENCE: f64 = 0.05;
 const LISTED: usize = 8;
 
 /// Covariance of (1/T, b, b δ_r) from the information, with noise and initial states eliminated, and its condition
-/// number.
+/// number. Fails with the condition number if it exceeds [`MAX_CONDITION`].
 fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
     let entries = information.nrows() - SHARED_PARAMETERS;
     let mut reduced = information.fixed_view::<SHARED_PARAMETERS, SHARED_PARAMETERS>(0, 0).into_owned();

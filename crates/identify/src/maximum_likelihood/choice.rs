@@ -34,7 +34,7 @@ const MIN_WEIGHT: f64 = 0.01;
 /// Minimum gain in −2 log of the restricted likelihood for a moment.
 const MIN_MOMENT_GAIN: f64 = 0.1;
 
-/// Minimum gain in −2 log of the restricted likelihood for the fit of a correlated moment.
+/// Minimum gain in −2 log of the restricted likelihood by a white moment or a walk for the fit of a correlated moment.
 const MIN_GUST_GAIN: f64 = 2.0;
 
 /// Records with their outliers and the estimate of `output-error` as start.
@@ -55,8 +55,9 @@ pub(super) struct ChosenLaw {
     pub outliers: Vec<Suspects>,
     /// `true` if there are too many spikes to leave out.
     pub has_too_many_outliers: bool,
-    /// BIC of every kind of moment that was fitted.
+    /// Kind of moment and BIC of every fitted law, and of every moment without gain.
     pub tried: Vec<(MomentKind, f64)>,
+    /// Number of evaluations of the likelihood, and of `output-error`.
     pub evaluations: usize,
     /// `true` if 1/T is at the edge of the range of `output-error`.
     pub is_at_bound: bool,
@@ -166,8 +167,8 @@ impl PreparedRecords {
     }
 }
 
-/// Residual of `output-error` at every heading of the whole track, with a start fitted without the `excluded` spikes;
-/// the heading itself without an estimate.
+/// Residual of `output-error` at every heading of the whole track, rad, with an initial state fitted without the
+/// `excluded` spikes; the heading itself without an estimate.
 fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec<f64> {
     let Some(estimate) = fitted else { return track.heading.clone() };
     let ship = estimate.response;
@@ -221,7 +222,7 @@ fn bic(records: &[Record], point: &Point) -> f64 {
 /// Fits of all noise laws, each with its BIC.
 type Ranked = Vec<(f64, Maximum)>;
 
-/// Fits every noise law that the settings allow, the lowest BIC first; also returns the BIC of every kind of moment.
+/// Fits every noise law that the settings allow, the lowest BIC first; also returns [`ChosenLaw::tried`].
 fn fit_laws(
     records: &[Record],
     ranges: &[Ranges],

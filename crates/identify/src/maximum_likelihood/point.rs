@@ -34,7 +34,7 @@ pub(super) struct Record {
     /// First rows after jumps of the compass by a constant.
     pub jumps: Vec<usize>,
     /// Declared standard deviation of the rudder error, rad. It fixes the rudder error of a noise vector, whose entry
-    /// then represents the size of the compass error.
+    /// then represents the size of the compass error. `None` if it is not declared or not used.
     pub declared: Option<f64>,
     /// Columns of the last 1/T: the filters of many noise laws share them.
     last_columns: RefCell<Option<Rc<RecordColumns>>>,
@@ -48,6 +48,7 @@ const INITIAL_STATE: usize = 2;
 /// Columns of the readings of one record for one 1/T.
 #[derive(Debug, Clone)]
 struct RecordColumns {
+    /// 1/T, 1/s.
     inverse_T: f64,
     /// At every reading the constant, the response to the initial yaw rate, the responses to rudder and constant, the
     /// reading, and the derivatives of the three responses with respect to 1/T.
@@ -95,13 +96,15 @@ pub(super) struct RecordAtPoint {
     pub by_time: Vec<f64>,
 }
 
-/// Start of a search: 1/T, and the noise vector of every record.
+/// Start of a search: 1/T (1/s), and the noise vector of every record.
 pub(super) type Start = (f64, Vec<NoiseVector>);
 
 /// Best fit for one 1/T and one noise law of every record.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
+    /// 1/T, 1/s.
     pub inverse_T: f64,
+    /// Noise vector of every record.
     pub vectors: Vec<NoiseVector>,
     /// −2 log L.
     pub deviance: f64,
@@ -138,7 +141,7 @@ impl Record {
         !self.track.rates.is_empty()
     }
 
-    /// Declared rudder error of a noise vector, rad.
+    /// Declared rudder error of a noise vector, rad; `None` without a declared or a fitted rudder error.
     pub fn declared_rudder_error(&self, vector: &NoiseVector) -> Option<f64> {
         self.declared.filter(|_| vector.has_rudder_error)
     }

@@ -9,7 +9,8 @@ use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS_INDEX, CORRELATION_INDEX, GYRO_INDEX, LEVEL_INDEX, RUDDER_INDEX};
 use trial::noise_model::MomentKind;
 
-/// Predicted decrease of −log L at which a search has converged: a hundredth of a standard deviation of the noise.
+/// Predicted decrease of −2 log L at which a search has converged: the unknowns are then about a hundredth of a
+/// standard deviation from the maximum.
 const MIN_DECREASE: f64 = 2e-4;
 
 /// The same for a search over 1/T alone, which must be as exact as `output-error`.
@@ -111,7 +112,8 @@ impl Search<'_> {
         Some(derivatives)
     }
 
-    /// Start with the lowest −2 log L, or restricted −2 log L if only the noise differs.
+    /// Start with the lowest `height`: −2 log L, or restricted −2 log L if only the noise differs;
+    /// `None` if no start is a ship with a finite likelihood.
     pub fn best_start(&mut self, starts: &[Start], height: fn(&Point) -> f64) -> Option<Point> {
         self.points(starts).flatten().min_by(|a, b| height(a).total_cmp(&height(b)))
     }
@@ -190,8 +192,8 @@ impl Search<'_> {
 
     /// Maximum likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
     ///
-    /// 1/T follows the likelihood and the noise the restricted likelihood, so steps need not lower the restricted
-    /// likelihood to the last digit.
+    /// 1/T follows the likelihood and the noise the restricted likelihood, so a step may lower the restricted
+    /// likelihood by up to half of [`SLACK`]. `None` if the derivatives are not finite.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
         let mut derivatives = self.score_and_information(&point)?;
@@ -218,7 +220,7 @@ impl Search<'_> {
                 next
             });
             let Some(lower) = lower else {
-                // No step decreases it any further: a minimum to rounding.
+                // No step keeps the restricted likelihood: a maximum to rounding, if the predicted decrease is small.
                 return Some(Maximum { point, derivatives, has_converged: promise < SLACK });
             };
             point = lower;
@@ -268,7 +270,7 @@ impl Search<'_> {
     }
 }
 
-/// Trial sizes of a moment, in units of the residual of a fit without a moment.
+/// Initial sizes of a moment, in units of the residual of a fit without a moment.
 const LEVELS: [f64; 4] = [0.03, 0.2, 1.0, 5.0];
 
 fn picked(score: &DVector<f64>, free: &[usize]) -> DVector<f64> {

@@ -50,7 +50,7 @@ pub enum CompassChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderChoice {
-    /// White, of the declared size, if that raises the likelihood.
+    /// White, of the declared size; none unless every record declares one.
     #[default]
     Declared,
     /// None.

@@ -228,7 +228,7 @@ fn a_coloured_compass_is_named() {
     assert!(estimate.warnings.iter().any(|warning| warning.text.contains("compass error")), "{:?}", estimate.warnings);
 }
 
-/// Bounds under a small walk equal the bounds in a calm, and are wider under a large walk; a rate gyro narrows them.
+/// The bound under a small walk equals the bound in a calm, and under a large walk it is that of simulated trials.
 #[test]
 fn the_bound_knows_the_noise() {
     let case = noisy();

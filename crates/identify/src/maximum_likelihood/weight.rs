@@ -19,7 +19,8 @@ pub(super) struct Weight {
     pub readings: f64,
     /// Number of readings minus number of fitted unknowns.
     pub freedom: f64,
-    /// Compass error of a ship with b = 1, rad, if the rudder error is declared.
+    /// Standard deviation of the compass error over b, rad s², if a declared rudder error fixes it; `None` if the
+    /// compass error follows from the residual.
     pub tied: Option<f64>,
 }
 
@@ -38,7 +39,8 @@ impl Weight {
     }
 }
 
-/// Best b and b δ_r over all records, and the variance of the compass error in every record.
+/// Best b (1/s²) and b δ_r (rad/s²) over all records, and the variance of the compass error in every record, rad²;
+/// `None` if the equations are singular.
 pub(super) fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
     let mut variances = vec![1.0; weights.len()];
     let mut best = Vector2::zeros();

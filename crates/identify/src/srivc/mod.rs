@@ -83,6 +83,9 @@ impl Settings {
 }
 
 /// Method of simplified refined instrumental variables for continuous time; see the [module](self).
+///
+/// Fails with [`IdentifyError::NotConverged`] if the iteration does not converge, with [`IdentifyError::Singular`]
+/// above the condition limit, and with [`IdentifyError::NotAShip`] if K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Srivc {
     settings: Settings,

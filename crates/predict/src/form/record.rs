@@ -24,14 +24,15 @@ const MIN_APPROACH_ROWS: usize = 3;
 pub struct FormRecord<'a> {
     /// Record.
     pub trial: &'a Trial,
-    /// Correction, if a model of the condition was given.
+    /// Correction; `None` without a model of the condition of the trial.
     pub correction: Option<&'a Correction>,
-    /// Current that was removed from the positions.
+    /// Current that was removed from the positions; `None` if no current was removed.
     pub current: Option<Current>,
 }
 
 impl FormRecord<'_> {
-    /// Loading of the ship; a corrected record was at partial load, even if it declares full load.
+    /// Loading of the ship; a corrected record was at partial load, even if it declares full load. `None` if it is
+    /// unknown.
     pub(crate) fn loading(&self) -> Option<Loading> {
         self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
     }
@@ -44,7 +45,7 @@ pub(crate) struct TestedManoeuvre<'a> {
     pub manoeuvre: Option<(FormManoeuvre, &'static str)>,
     /// Characteristics that the record shows.
     pub figures: Vec<(&'static str, Quantity)>,
-    /// Reason why the record is not a manoeuvre of the form, or a remark.
+    /// Reason why the record is not a manoeuvre of the form, or a remark; `None` without a remark.
     pub remark: Option<String>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> TestedManoeuvre<'a> {
         self.manoeuvre.is_some_and(|(tested, to)| tested == manoeuvre && to == side)
     }
 
-    /// Characteristic of the record, by name.
+    /// Characteristic of the record, by name; `None` if the record does not show it.
     pub fn figure(&self, name: &str) -> Option<Quantity> {
         self.figures.iter().find(|(figure, _)| *figure == name).map(|(_, value)| *value)
     }
@@ -139,7 +140,7 @@ fn circle(trial: &Trial) -> Classified {
         String::from("neither a zig-zag of the form nor, with an unknown length of the ship, a turning circle")
     })?;
     let passage = turn::resampled_record(trial, length / speed, Some(length)).ok_or_else(neither)?;
-    let shown = turn.figures(&passage);
+    let shown = turn.characteristics_within_record(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
     let rudder = to_deg(turn.rudder);
     if (turn.rudder - CIRCLE_RUDDER).abs() > CIRCLE_RUDDER_TOLERANCE {

@@ -25,9 +25,9 @@ use crate::theme::Theme;
 pub struct MapCell {
     /// Value in the unit of the map; `None` if it is not defined.
     pub value: Option<f64>,
-    /// 95 % interval of the value, written if there is room.
+    /// 95 % interval of the value, written if there is room; `None` without an interval.
     pub interval: Option<[f64; 2]>,
-    /// Outline of the cell, if it has one.
+    /// Outline of the cell; `None` without an outline.
     pub outline: Option<Outline>,
 }
 
@@ -45,8 +45,8 @@ pub enum Outline {
 /// Mapping from values to colours.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shades {
-    /// Colours from the lowest to the highest value over an axis with this tick rule; a bar under the panels shows the
-    /// values, with this title and unit.
+    /// Colours from the lowest to the highest value, in equal factors for [`TickRule::Logarithmic`], otherwise in equal
+    /// steps. A bar under the panels shows the values, with this title and unit.
     Range(TickRule, String),
     /// Per cent from white to blue; zero is empty.
     Shares,
@@ -63,16 +63,16 @@ pub struct CellMap {
     pub rows: Vec<String>,
     /// Mapping from values to colours.
     pub shades: Shades,
-    /// Panels with their heads: cells, one list per row.
+    /// Panels with the text above them, `None` without one, and their cells, one list per row.
     pub panels: Vec<(Option<String>, Vec<Vec<MapCell>>)>,
-    /// Remark under the figure.
+    /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,
 }
 
 /// Minimum legible font size, points.
 const MIN_FONT_PT: f64 = 6.5;
 
-/// Minimum height of all rows of a wide figure, as a share of its width.
+/// Height to which the rows of a wide figure grow together, as a share of its width.
 const HEIGHT: f64 = 0.28;
 
 /// Maximum factor by which rows grow to reach that height.
@@ -107,7 +107,8 @@ impl CellMap {
         if theme.is_narrow() { usual } else { usual.max(higher) }
     }
 
-    /// Number of panels side by side: three, or as many as leave room for the numbers in the cells.
+    /// Number of panels side by side: as many as leave room for the numbers in the cells, at most three; two if there
+    /// are four panels.
     fn across(&self, theme: &Theme) -> usize {
         let widest = |labels: &[String], font: f64| {
             labels.iter().map(|label| text_width(label, font, false)).fold(0.0, f64::max)
@@ -166,7 +167,7 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
 /// Number of pieces of the colour bar.
 const PIECES: usize = 64;
 
-/// Draws the colour bar with its values under the panels; no bar for one value or none.
+/// Draws the colour bar with its values under the panels, unless there are fewer than two different values.
 fn bar(sheet: &mut Sheet, tick_rule: TickRule, title: &str, shading: &Shading) -> PlotResult {
     if shading.high <= shading.low {
         return Ok(());
@@ -182,7 +183,7 @@ fn bar(sheet: &mut Sheet, tick_rule: TickRule, title: &str, shading: &Shading) -
     let grid = Grid { columns: vec![AxisSide::new(axis, title)], rows, ..Grid::default() };
     let piece = |number: usize| {
         let at = |share: f64| value(shading.low + share / PIECES as f64 * (shading.high - shading.low));
-        // Each piece overlaps the end of the one before: edges side by side would let the paper through.
+        // Each piece reaches to the end, under all later ones: pieces side by side would let the paper through.
         let corners = [(at(number as f64), -0.5), (high, 0.5)];
         Rectangle::new(corners, shading.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
@@ -200,7 +201,9 @@ fn written(cell: &MapCell) -> String {
 
 /// Mapping from values to colours.
 struct Shading {
+    /// Minimum of the values, or of their decadic logarithms if `is_log`.
     low: f64,
+    /// Maximum, like `low`.
     high: f64,
     is_log: bool,
     is_shares: bool,
@@ -215,7 +218,7 @@ impl Shading {
         Self { low, high, is_log, is_shares }
     }
 
-    /// Colour of a value and its opacity; the lowest colour for a zero on an axis of equal factors.
+    /// Colour of a value and its opacity. Zero on a logarithmic scale has the lowest colour.
     fn colour(&self, value: f64) -> (RGBColor, f64) {
         if self.is_shares {
             let share = (value / 100.0).clamp(0.0, 1.0);
@@ -228,7 +231,7 @@ impl Shading {
     }
 }
 
-/// Interval as text, for a share of the trials above zero.
+/// Interval of a positive value as text, in whole numbers; `None` for any other cell.
 fn bracket(cell: &MapCell) -> Option<String> {
     let [low, high] = cell.interval.filter(|_| cell.value.is_some_and(|value| value > 0.0))?;
     Some(format!("{low:.0}–{high:.0}"))
@@ -248,7 +251,7 @@ impl PlacedCell<'_> {
         self.cell.value.map_or((GRID, 1.0), |value| self.shading.colour(value))
     }
 
-    /// Fills the cell, with thin lines to its neighbours if most cells are white.
+    /// Fills the cell, with thin lines to its neighbours in a map of shares, most of whose cells are white.
     fn shade(&self, chart: &Chart) -> PlotResult {
         let (colour, opacity) = self.colour();
         let [left, right, top, bottom] = [self.x - 0.5, self.x + 0.5, self.y - 0.5, self.y + 0.5];

@@ -7,7 +7,7 @@ use plotters::style::{Color as _, RGBColor};
 use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
 use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
 use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
-use super::side_labels;
+use super::{point_labels, side_labels};
 use crate::axis::{Axis, TickRule};
 use crate::backend::{PlotResult, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units, ship_outline};
@@ -43,7 +43,7 @@ const WIDE: [f64; 2] = [0.52, 0.62];
 /// Maximum share of the height of a panel that is free below and above its data.
 const MAX_ROOM: f64 = 0.6;
 
-/// Number of panels side by side in a narrow figure.
+/// Maximum number of panels side by side in a narrow figure; a longer row becomes small multiples.
 const NARROW: usize = 3;
 
 /// Figure adapted to its page: on a narrow page, many panels side by side become small multiples; on a wide page, the
@@ -74,7 +74,7 @@ fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a
     rows.flat_map(move |row| row.chunks(if row[0].is_half { across } else { 1 }))
 }
 
-/// Draws the stacks below each other.
+/// Drawing of the stacks in reading order.
 pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     annotated(data, finding, theme, &|_| Ok(None))
 }
@@ -137,7 +137,7 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
     };
     let apart = outside.apart.then(|| String::from("Records of one amplitude stand side by side."));
     let marks = outside.marks.then(|| data.overflow_note.clone().unwrap_or_else(|| BEYOND_AXIS_REMARK.to_owned()));
-    let cut = data.cut.clone().filter(|_| outside.is_cut);
+    let cut = data.clipping_note.clone().filter(|_| outside.is_cut);
     let names = (!outside.names.is_empty()).then(|| format!("Outside the axes: {}.", outside.names.join(", ")));
     [data.note.clone(), outside.bars.remark(), cut, dots, names, apart, marks].into_iter().flatten().collect()
 }
@@ -164,19 +164,20 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<LegendEntry> {
     entries
 }
 
-/// Stroke of a marked value of an axis: one with a name, or one without.
+/// Stroke of a marked value of an axis: dashed if it has a name in the key, otherwise dotted.
 fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
     let (colour, dash) = if label.is_empty() { (RECORD, DOTTED) } else { (INK, SHORT_DASH) };
     Stroke { dash, ..Stroke::solid(colour, theme.thin) }
 }
 
-/// Number of panels of a stack side by side.
+/// Number of panels of a stack side by side; on a narrow page one fewer of small multiples, unless they are a unit.
 fn columns(stack: &Stack, theme: &Theme) -> usize {
     let narrower = usize::from(theme.is_narrow() && !stack.is_unbroken);
     stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
-/// Extents of layers along one axis; if the axis is cut for wild data, every value is a separate extent.
+/// Extents of layers along one axis. If the axis is limited against outliers, every value of a line or band is a
+/// separate extent.
 fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_vertical: bool) -> Extents {
     let mut extents = Extents::default();
     for layer in layers {
@@ -208,7 +209,7 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let kept = stack.panels.iter().enumerate().filter(|(index, _)| stack.columns.is_some() || keep(*index));
         kept.flat_map(|(_, panel)| &panel.layers).collect()
     };
-    // Marks have a width.
+    // Marks reach beyond their points by their radius, so they need free space at both sides.
     let has_marks = layers(&|_| true).iter().any(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let mut column = |number: usize| {
         let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
@@ -289,7 +290,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
             dots += draw_layer(chart, layer, theme, outside)?;
         }
         chart.frame(theme)?;
-        panel.layers.iter().try_for_each(|layer| draw_labels(chart, layer, theme))?;
+        point_labels::draw(chart, &panel.layers, theme)?;
         if stack.columns.is_some() {
             corner(chart, theme, panel)?;
         }
@@ -298,7 +299,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
     Ok(())
 }
 
-/// Draws the background of the layers.
+/// Draws what is behind the layers: lines at zero, levels, the reference and marked values of the horizontal axis.
 fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> PlotResult {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
@@ -315,7 +316,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
     stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.value, mark_stroke(&mark.label, theme)))
 }
 
-/// Writes the number of dots outside a small multiple into its corner.
+/// Writes the number of dots outside a small multiple into its corner, or that it has no dots.
 fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> PlotResult {
     let is_cloud = |layer: &&Layer| matches!(layer.kind, LayerKind::Cloud(_));
     let Some(layer) = panel.layers.first().filter(is_cloud) else { return Ok(()) };
@@ -326,7 +327,7 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> PlotResult {
         (_, count) => format!("{count} beyond the axes"),
     };
     let place = (chart.rect.right() - 0.4 * theme.small_font, chart.rect.bottom() - 0.9 * theme.small_font);
-    chart.canvas.text_on_ground(place, &TextLine::new(note, theme.small_font, HPos::Right))
+    chart.canvas.text_with_halo(place, &TextLine::new(note, theme.small_font, HPos::Right))
 }
 
 /// Draws a layer; returns the number of dots beyond the panel.
@@ -349,25 +350,9 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.draw_elements(ship))?;
             }
         }
-        LayerKind::Labels(..) => {}
+        LayerKind::Labels(_) => {}
     }
     Ok(0)
-}
-
-/// Writes the labels of a layer next to its points, on the other side if they would leave the panel.
-fn draw_labels(chart: &Chart, layer: &Layer, theme: &Theme) -> PlotResult {
-    let LayerKind::Labels(corner, labels) = &layer.kind else { return Ok(()) };
-    let (right, down) = (1.2 * theme.marker, theme.marker + 0.35 * theme.small_font);
-    let down = if corner.is_above { -down } else { down };
-    for ((x, y), label) in layer.curve.pairs().zip(labels) {
-        let Some((x, y)) = chart.inside(x, y) else { continue };
-        let text = TextLine::new(label, theme.small_font, HPos::Left);
-        let left = x - right - text.width();
-        let fits_right = x + right + text.width() < chart.rect.right();
-        let is_right = left < chart.rect.x || corner.is_right && fits_right;
-        chart.canvas.text_on_ground((if is_right { x + right } else { left }, y + down), &text)?;
-    }
-    Ok(())
 }
 
 /// Marks points above and below a panel by small arrows at its edge, and counts them.

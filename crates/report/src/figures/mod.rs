@@ -4,6 +4,7 @@
 mod cells;
 mod layers;
 mod panels;
+mod point_labels;
 mod reach;
 mod row_layers;
 mod rows;
@@ -12,9 +13,7 @@ mod side_labels;
 mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
-pub use panels::{
-    AxisLine, AxisSpec, LabelPlacement, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, TickRule,
-};
+pub use panels::{AxisLine, AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, TickRule};
 pub use reach::AxisReach;
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
@@ -49,7 +48,7 @@ impl Plot {
         drawn.expect("the backend writes into memory, which does not fail")
     }
 
-    /// Remark under the figure; `None` for a zig-zag, which has none.
+    /// Remark under the figure, to be changed; `None` for a zig-zag, whose remark follows from its data.
     pub fn note(&mut self) -> Option<&mut Option<String>> {
         match self {
             Self::Panels(data) => Some(&mut data.note),

@@ -23,7 +23,7 @@ pub struct AxisSpec {
     pub title: String,
     /// Rule by which the axis places its ticks.
     pub tick_rule: TickRule,
-    /// Reach of the axis for wild data; `None`: all data.
+    /// Limit of the axis against outliers; `None` for an axis over all data.
     pub reach: Option<AxisReach>,
     /// Names of the values 0, 1, 2, … in place of numbers; empty for a numeric axis.
     pub names: Vec<String>,
@@ -65,7 +65,7 @@ impl AxisSpec {
         Self::decimal(format!("yaw rate {} [°/s]", symbol("r")))
     }
 
-    /// The axis limited to `times` the median extent of the data from a centre.
+    /// The axis limited to `times` the median extent of the data from a centre; `None` for the median of the data.
     pub fn within(self, times: f64, centre: Option<f64>) -> Self {
         Self { reach: Some(AxisReach { times, centre, is_symmetric: false }), ..self }
     }
@@ -96,7 +96,7 @@ pub struct Pen {
     pub colour: RGBColor,
     /// Width, in standard widths.
     pub width: f64,
-    /// Dash pattern.
+    /// Dash pattern, in line widths.
     pub dash: Dash,
     /// Opacity, from 0 to 1.
     pub opacity: f64,
@@ -108,7 +108,7 @@ impl Pen {
         Self { colour, width: 1.0, dash: SOLID, opacity: 1.0 }
     }
 
-    /// Line of an origin.
+    /// Line with colour and dash of an origin.
     pub fn from_origin(origin: &CurveOrigin) -> Self {
         let look = origin.look();
         Self { dash: look.dash, ..Self::new(look.colour) }
@@ -134,21 +134,12 @@ impl Pen {
 pub struct Marks {
     /// Look of the marks.
     pub look: Look,
-    /// Intervals of the marks, if they have any.
+    /// Intervals of the marks in their order, values of the vertical axis; `None` for a mark without an interval.
     pub intervals: Vec<Option<[f64; 2]>>,
-    /// Line that joins the marks.
+    /// Line that joins the marks; `None` for separate marks.
     pub joined: Option<Pen>,
     /// `true` if marks that would overlap are drawn side by side.
     pub side_by_side: bool,
-}
-
-/// Corner of a point at which its label stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LabelPlacement {
-    /// `true` above the point.
-    pub is_above: bool,
-    /// `true` to the right of the point.
-    pub is_right: bool,
 }
 
 /// Kind of a layer: how its points are drawn.
@@ -168,21 +159,21 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Labels next to the points, all at the same corner, in the colour of text.
-    Labels(LabelPlacement, Vec<String>),
+    /// Labels next to the points, in the colour of text.
+    Labels(Vec<String>),
 }
 
 /// One layer of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// Name in the key; layers of one name are listed once.
+    /// Name in the key, where layers of one name are listed once; `None` for a layer that is not listed.
     pub name: Option<String>,
     /// Points of the layer.
     pub curve: PlotCurve,
     /// Kind of the layer.
     pub kind: LayerKind,
-    /// Maximum share of the range of all other data by which the layer may widen the axes before it is cut; `None`:
-    /// never cut.
+    /// Maximum share of the range of all other data by which the layer may widen the axes before it is cut; `None` for
+    /// a layer that sets the axes.
     pub room: Option<f64>,
 }
 
@@ -246,13 +237,14 @@ impl Layer {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
             LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) => *colour,
-            LayerKind::Labels(..) => crate::palette::INK,
+            LayerKind::Labels(_) => crate::palette::INK,
             LayerKind::Marks(marks) => marks.look.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
     }
 
-    /// Sample in the key; for overlapping bands with the opacity `shade`.
+    /// Sample in the key, that of a band with the opacity `shade`; `None` for labels, and for a record or ships without
+    /// points.
     pub(super) fn legend_symbol(&self, theme: &Theme, shade: f64) -> Option<LegendSymbol> {
         Some(match &self.kind {
             LayerKind::Line(pen) => LegendSymbol::Line(pen.stroke(theme)),
@@ -266,7 +258,7 @@ impl Layer {
                 LegendSymbol::LineAndMarker(pen.stroke(theme), *look)
             }
             LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
-            LayerKind::Labels(..) => return None,
+            LayerKind::Labels(_) => return None,
             LayerKind::Ships(..) if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })
@@ -284,7 +276,7 @@ pub struct PanelRow {
     pub zero: bool,
     /// Levels of dashed lines from left to right, such as the limits of white noise.
     pub levels: Vec<f64>,
-    /// Reference value of the results, with its band of chance.
+    /// Reference value of the results, with its band of chance; `None` without a reference.
     pub reference: Option<Reference95>,
     /// Shares of the height that are free below and above the data.
     pub room: [f64; 2],
@@ -305,9 +297,9 @@ impl PanelRow {
 /// Panel of layers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LayeredPanel {
-    /// Line of text above the panel.
+    /// Text above the panel; `None` without one.
     pub head: Option<String>,
-    /// Result behind the head.
+    /// Result, written after the head; `None` without one.
     pub detail: Option<String>,
     /// The layers, the first at the bottom.
     pub layers: Vec<Layer>,
@@ -318,7 +310,7 @@ pub struct LayeredPanel {
 pub struct AxisLine {
     /// Value on the axis.
     pub value: f64,
-    /// Name in the key; empty without one.
+    /// Name in the key; empty for a line that is not listed.
     pub label: String,
 }
 
@@ -333,7 +325,8 @@ pub struct Stack {
     pub panels: Vec<LayeredPanel>,
     /// Lines from bottom to top.
     pub marks: Vec<AxisLine>,
-    /// Small multiples: their number side by side; all share the one axis and the one row.
+    /// Number of small multiples side by side, all with the first horizontal axis and the first row; `None` for panels
+    /// in rows and columns.
     pub columns: Option<usize>,
     /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
     pub is_unbroken: bool,
@@ -366,13 +359,13 @@ pub struct Panels {
     pub stacks: Vec<Stack>,
     /// `true` if names are right of the frame, in place of a key; on a narrow page they are always in the key.
     pub names_aside: bool,
-    /// Texts with numbers in the key.
+    /// Texts in the key without a sample, such as numbers.
     pub key_texts: Vec<String>,
-    /// Remark under the figure.
+    /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,
-    /// Remark if a layer is cut.
-    pub cut: Option<String>,
-    /// Meaning of marks beyond the axes; `None` without a remark.
+    /// Remark that is added if a layer is cut; `None` without a remark.
+    pub clipping_note: Option<String>,
+    /// Remark that is added if marks are beyond the axes; `None` for the usual remark.
     pub overflow_note: Option<String>,
 }
 

@@ -9,7 +9,7 @@ use crate::axis;
 pub struct AxisReach {
     /// Multiple of the median extent.
     pub times: f64,
-    /// Centre of the axis; `None`: the median of the data.
+    /// Centre of the axis; `None` for the median of the data.
     pub centre: Option<f64>,
     /// `true` if the axis is symmetric about the centre.
     pub is_symmetric: bool,
@@ -29,17 +29,17 @@ pub(super) struct Extents {
 /// Maximum share of the range by which the ends of intervals may widen an axis.
 pub(super) const MAX_INTERVAL_SHARE: f64 = 1.0;
 
-/// Minimum usual extent, as a share of the centre: equal values differ by rounding alone.
+/// Minimum median extent, as a share of the centre: equal values differ by rounding alone.
 const LEAST_USUAL: f64 = 1e-3;
 
-/// Minimum room of an interval, as a share of the maximum value: equal values have no range.
+/// Minimum room of an interval, as a share of the maximum magnitude: equal values have no range.
 const LEAST_ROOM: f64 = 0.2;
 
-/// Minimum lower end of an interval on an axis of equal factors, as a share of the minimum value; lower ones are cut,
-/// because they would stretch the axis by decades.
+/// Minimum lower end of an interval on a logarithmic axis, as a share of the minimum positive value. Lower ends are
+/// cut, because they would stretch the axis by decades.
 const LOWEST: f64 = 0.5;
 
-/// Maximum upper end of an interval on such an axis, in maximum values.
+/// Maximum upper end of an interval on a logarithmic axis, as a multiple of the maximum value.
 const HIGHEST: f64 = 10.0;
 
 impl Extents {
@@ -88,7 +88,7 @@ impl Extents {
         near.map(|(lo, hi)| (lo.max(least), hi.min(most))).collect()
     }
 
-    /// Values that have a place on an axis of equal factors.
+    /// Values that set a logarithmic axis: finite ones from zero on, and ends of intervals within limits.
     pub(super) fn positive(&self) -> Vec<f64> {
         let all = self.item_ranges.iter().flat_map(|(lo, hi)| [*lo, *hi]).chain(self.fixed.iter().copied());
         let mut values: Vec<f64> = all.filter(|value| *value >= 0.0 && value.is_finite()).collect();
@@ -103,10 +103,11 @@ impl Extents {
 /// Maximum share of the points on either side that count as outliers.
 const FAR: f64 = 0.005;
 
-/// Maximum distance of outliers from the other points on the axis, in ranges of those.
+/// Maximum distance of outliers from the other points on the axis, in ranges of the other points.
 const ROOM: f64 = 0.5;
 
-/// Values that set the axis: minimum and maximum, after a few outliers are moved towards the other values.
+/// Values that set the axis: minimum and maximum, after a few outliers are moved towards the other values. If these are
+/// too few to define a range, all values set the axis.
 pub(super) fn robust_range(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let skipped = (FAR * values.len() as f64).ceil() as usize;

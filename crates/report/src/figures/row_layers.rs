@@ -56,10 +56,10 @@ impl RowItem {
     }
 }
 
-/// Maximum multiple of the range of the usual distributions by which the median of another one may widen an axis.
+/// Maximum multiple of the range of all other data by which the median of a distribution may widen an axis.
 const MEDIANS: f64 = 4.0;
 
-/// Maximum multiple of that range by which the quartiles of another distribution may widen an axis.
+/// Maximum multiple of that range by which the quartiles of a distribution may widen an axis.
 const BOXES: f64 = 4.0;
 
 fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
@@ -132,7 +132,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
     Ok(sheet.finish())
 }
 
-/// Length in points of the interval of a mark; `None` if it has none.
+/// Length in points of the interval of a mark; `None` without an interval on the scale.
 fn bar_length(chart: &Chart, item: &RowItem) -> Option<f64> {
     let RowKind::Mark(_, _, Some(ends)) = item.kind else { return None };
     let [left, right] = ends.map(|end| chart.page_x(end.clamp(-f64::MAX, f64::MAX)));
@@ -155,7 +155,7 @@ fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     }
 }
 
-/// Number of items below each other.
+/// Number of items of a row that are on separate lines below each other.
 fn stacked(items: &[RowItem]) -> usize {
     items.iter().filter(|item| item.place == RowPlace::Below).count()
 }
@@ -240,7 +240,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
         let y = chart.page_y(row as f64).unwrap_or(f64::NAN);
         for ((number, look), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
-            chart.canvas.text_on_ground((right, y), number)?;
+            chart.canvas.text_with_halo((right, y), number)?;
             right -= width;
             if let Some(look) = look.filter(|_| widths.len() > 1) {
                 let place = page_units((right + theme.small_font, y));
@@ -255,13 +255,13 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
         let middle = chart.page_y(row as f64).unwrap_or(f64::NAN);
         if is_estimated && !items.iter().any(RowItem::is_value) {
             let text = TextLine { colour: RECORD, ..TextLine::new("no estimate", theme.small_font, HPos::Center) };
-            chart.canvas.text_on_ground((chart.rect.x + chart.rect.w / 2.0, middle), &text)?;
+            chart.canvas.text_with_halo((chart.rect.x + chart.rect.w / 2.0, middle), &text)?;
         }
     }
     Ok(beyond)
 }
 
-/// Draws an item at its height, in rows; returns whether it is beyond the axis.
+/// Draws an item at the vertical place `y`, in rows; returns whether it is beyond the axis.
 fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> PlotResult<bool> {
     let name = item.name.as_deref();
     let bar =
@@ -286,7 +286,8 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
     }
 }
 
-/// Draws a mark, or an arrow with its number if it is beyond the axis; returns whether it is beyond.
+/// Draws a mark; if it is beyond the axis, an arrow instead, with its value if no other item needs the room. Returns
+/// whether it is beyond.
 fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> PlotResult<bool> {
     let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
     let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
@@ -302,7 +303,7 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     if is_alone && !item.soft && value.abs() < f64::MAX {
         let anchor = if side > 0.0 { HPos::Right } else { HPos::Left };
         let label = TextLine::new(significant(value, 3), theme.small_font, anchor);
-        chart.canvas.text_on_ground((tip - side * 1.3 * size, height), &label)?;
+        chart.canvas.text_with_halo((tip - side * 1.3 * size, height), &label)?;
     }
     Ok(true)
 }
@@ -336,7 +337,7 @@ fn beside(chart: &Chart, [left, right]: [f64; 2], height: f64, text: &TextLine) 
     let last = chart.rect.right() - text.width();
     let to_left = left - text.width();
     let x = if right > last && to_left > chart.rect.x { to_left } else { right.min(last) };
-    chart.canvas.text_on_ground((x, height), text)
+    chart.canvas.text_with_halo((x, height), text)
 }
 
 /// Half height of a violin and of a limit, in rows.

@@ -10,7 +10,8 @@ use crate::palette::Look;
 /// Content of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowKind {
-    /// Mark at a value, and its interval as a bar with caps. An infinite value is an arrow at the edge.
+    /// Mark at a value, and its interval as a bar; `None` without an interval. An infinite value is an arrow at the
+    /// edge.
     Mark(Look, f64, Option<[f64; 2]>),
     /// Thin interval.
     Thin([f64; 2]),
@@ -40,7 +41,7 @@ pub enum RowPlace {
 /// Item of a row: a mark, bar, interval, limit, distribution or heading, with its name in the key.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowItem {
-    /// Name in the key; items of one name are listed once.
+    /// Name in the key, where items of one name are listed once; `None` for an item that is not listed.
     pub name: Option<String>,
     /// Kind of the item.
     pub kind: RowKind,
@@ -48,7 +49,8 @@ pub struct RowItem {
     pub place: RowPlace,
     /// `true` if the item may be cut when it leaves the range of all other data by more than that range.
     pub soft: bool,
-    /// Number written at the right end of the row; if rows have several, behind their marks.
+    /// Number written at the right end of the row, after its mark if rows have several numbers; `None` without a
+    /// number.
     pub number: Option<String>,
 }
 
@@ -74,7 +76,7 @@ impl RowItem {
         Self { soft: true, ..self }
     }
 
-    /// `true` if the item is a value, and not only an interval of one; a heading needs none.
+    /// `true` if the item has a value and not only an interval, or is a heading, which needs no value.
     pub(super) fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
@@ -93,9 +95,9 @@ pub struct RowsColumn {
     pub rows: Vec<Vec<RowItem>>,
     /// `true` if the axis includes zero, with a line there.
     pub zero: bool,
-    /// Reference value of the results, with its band of chance.
+    /// Reference value of the results, with its band of chance; `None` without a reference.
     pub reference: Option<Reference95>,
-    /// Reference values of all rows, with their names in the key.
+    /// Vertical lines across all rows: name in the key, style, value.
     pub lines: Vec<(String, Pen, f64)>,
     /// Values that the axis always includes.
     pub included_values: Vec<f64>,
@@ -110,10 +112,10 @@ pub struct NamedRows {
     pub names: Vec<String>,
     /// The columns, side by side.
     pub columns: Vec<RowsColumn>,
-    /// Rows on a pale ground, and the meaning of that ground.
+    /// Meaning of a pale ground, and the indices of the rows on it; `None` without such rows.
     pub shaded: Option<(String, Vec<usize>)>,
-    /// Remark under the figure.
+    /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,
-    /// Meaning of marks beyond the axes; `None` without a remark.
+    /// Remark that is added if data are beyond an axis; `None` for the usual remark.
     pub overflow_note: Option<String>,
 }

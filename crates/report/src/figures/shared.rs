@@ -1,4 +1,4 @@
-//! Parts shared by kinds of figure: records, areas, reference lines, marks side by side.
+//! Parts shared by kinds of figure: records, remarks on error bars, reference lines, marks side by side.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +12,10 @@ use crate::legend::LegendSymbol;
 use crate::palette::{INK, RECORD};
 use crate::theme::Theme;
 
-/// Free space above and below the data, as a share of its range.
+/// Free space above and below the data, as a share of their range.
 pub(super) const PAD_SHARE: f64 = 0.08;
 
-/// Free space left and right of lines.
+/// Free space left and right of lines, as a share of the range of the data.
 pub(super) const ACROSS_PAD: f64 = 0.02;
 
 /// Maximum number of points of a panel that are drawn as dots; more are drawn as a line.
@@ -42,7 +42,7 @@ impl Bars {
         *(if length.abs() > 2.0 * theme.marker { &mut self.are_seen } else { &mut self.are_hidden }) = true;
     }
 
-    /// Remark on the bars; `None` if there are none.
+    /// Remark on the bars; `None` without bars.
     pub(super) fn remark(&self) -> Option<String> {
         let remark = match (self.are_seen, self.are_hidden) {
             (false, false) => return None,

@@ -26,7 +26,8 @@ pub(super) fn width(data: &Panels, theme: &Theme) -> f64 {
     widths.reduce(f64::max).map_or(0.0, |width| width + GAP * theme.small_font)
 }
 
-/// Anchor of a name: the rightmost point of its layer in the frame; an infinite value is at the edge.
+/// Anchor of a name: the rightmost point of its layer in the frame, where an infinite value is at the upper edge;
+/// `None` without a point in the frame.
 fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     let place = |(x, y): (f64, f64)| match y.is_infinite() {
         true => Some((chart.page_x(x)?, chart.rect.y)),
@@ -76,7 +77,7 @@ fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> PlotResult<Ve
     Ok(outside.into_iter().map(|(layer, _)| layer).collect())
 }
 
-/// Middles of labels of one height, without overlap and as near as possible to the wanted ones, which are in order.
+/// Middles of labels of one height, without overlap and near the `wanted` middles, which are in order.
 fn spread(wanted: &[f64], height: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
     let mut free = top;
     let mut tops: Vec<f64> = Vec::with_capacity(wanted.len());

@@ -74,7 +74,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             stack(TickRule::Percent, true),
         ],
         key_texts: vec!["R² = 1".into()],
-        cut: Some("Cut.".into()),
+        clipping_note: Some("Cut.".into()),
         ..Panels::default()
     };
     let cloud = |(number, origin): (usize, CurveOrigin)| {
@@ -314,7 +314,7 @@ fn labels_carry_symbol_and_unit() {
 fn what_runs_off_is_cut_and_says_so() {
     let drawn = |layers: Vec<Layer>, cut: &str| {
         let data = Panels {
-            cut: Some(cut.into()),
+            clipping_note: Some(cut.into()),
             ..Panels::over_time(vec![(PanelRow::new(AxisSpec::heading(), 0.2), layers)])
         };
         Plot::from(data).draw("", &Theme::screen()).svg().to_owned()
@@ -417,7 +417,8 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
             let rows = vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), layers)];
             let stack = Stack { has_equal_scales: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
-            let figure = Plot::from(Panels { cut: Some("Cut.".into()), ..Panels::new(stack) }).draw("", &theme);
+            let figure =
+                Plot::from(Panels { clipping_note: Some("Cut.".into()), ..Panels::new(stack) }).draw("", &theme);
             let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
             let sides: Vec<f64> = panel.skip(2).collect();
             let lengths = ["data-x", "data-y"].map(|axis| {
@@ -431,7 +432,7 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
     }
 }
 
-/// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.
+/// A record of several days has thousands of executes; with all of them marked, the file is too large to be drawn.
 #[test]
 fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
     let mark = |k: usize| ZigZagMark { t_s: 0.05 * k as f64, heading_deg: 10.0 };

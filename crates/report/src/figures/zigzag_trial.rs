@@ -136,7 +136,8 @@ impl ZigZagPlot {
         Panels::new(Stack { marks, ..Stack::over(AxisSpec::time(), rows) })
     }
 
-    /// Draws overshoots, times and period; returns their meaning, with the times if they do not fit at their lines.
+    /// Draws overshoots, times and period. Returns the meaning of overshoots and times, with the times if they do not
+    /// fit at their lines; `None` without overshoots and times.
     fn annotate(&self, chart: &Chart, theme: &Theme) -> PlotResult<Option<String>> {
         let size = theme.small_font;
         let draw = Dimensions { chart, theme };
@@ -208,7 +209,7 @@ impl Dimensions<'_> {
     /// Writes the quantity at a dimension line.
     fn label(&self, place: PagePoint, text: &str) -> PlotResult {
         let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
-        self.chart.canvas.text_on_ground(place, &text)
+        self.chart.canvas.text_with_halo(place, &text)
     }
 
     /// Draws the vertical dimension line from the heading of the execute to the extremum, with its angle beyond the
@@ -229,8 +230,8 @@ impl Dimensions<'_> {
         self.label((x, peak.1 + beyond), &text)
     }
 
-    /// Draws the horizontal dimension line of a span, with lines to the curve if a marked point is at its end; returns
-    /// its middle if that is in the frame.
+    /// Draws the horizontal dimension line of a span at `y`, with lines to the curve if a marked point is at its end.
+    /// Returns the horizontal place of its middle, points; `None` if an end is outside the frame and nothing is drawn.
     fn span(&self, data: &ZigZagPlot, span: &TimeSpan, y: f64) -> PlotResult<Option<f64>> {
         let inside = |t: f64| self.chart.page_x(t).filter(|x| self.chart.rect.contains((*x, y)));
         let (Some(from), Some(to)) = (inside(span.from_s), inside(span.to_s)) else { return Ok(None) };

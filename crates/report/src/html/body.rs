@@ -30,14 +30,17 @@ struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> FigureFiles,
     /// Titles of the parts that are closed at first.
     folded: &'a [&'a str],
-    /// `true` if such a part is being read; `true` if its headline is being read.
+    /// Whether such a part is being read, and whether its headline is being read.
     fold: (bool, bool),
+    /// Remaining size for figures.
     room: SizeBudget,
     out: Vec<Event<'m>>,
     headings: Vec<PageHeading>,
+    /// Ids that are already in the page.
     ids: HashSet<String>,
     /// Text of the latest section heading.
     section: String,
+    /// Alignments of the columns of the latest table.
     alignments: Vec<Alignment>,
     /// Number of the next cell, and whether it is in a table head.
     cell: (usize, bool),
@@ -86,7 +89,7 @@ fn plain_text(events: &[Event], start: usize) -> (String, usize) {
     (text, events.len())
 }
 
-/// Text of a paragraph that consists of emphasis alone, and the place after it.
+/// Text of a paragraph that consists of emphasis alone, and the place after it; `None` for any other event.
 fn emphasis(events: &[Event], place: usize) -> Option<(String, usize)> {
     let is_begun = matches!(events.get(place)?, Event::Start(Tag::Paragraph))
         && matches!(events.get(place + 1)?, Event::Start(Tag::Emphasis));
@@ -104,7 +107,7 @@ impl<'m> BodyReader<'_, 'm> {
             }
             match &events[place] {
                 Event::Start(Tag::Heading { level, .. }) => self.heading(*level, plain_text(&events, place).0),
-                // Words over several rows are written once: no cell below them is a head.
+                // A name for several rows is written once, so an empty cell below it is not the head of its row.
                 Event::Start(Tag::TableCell) => {
                     self.begin_cell(matches!(events.get(place + 1), Some(Event::End(TagEnd::TableCell))));
                 }
@@ -126,7 +129,8 @@ impl<'m> BodyReader<'_, 'm> {
         self.out.push(Event::Html(html.into()));
     }
 
-    /// Figure of a paragraph that is only an image, with the emphasised paragraph after it as its caption.
+    /// Writes the figure of a paragraph that is only an image, with the emphasised paragraph after it as its caption.
+    /// Returns the place after it; `None` if no paragraph with a PNG next to the page begins at `place`.
     fn figure(&mut self, events: &[Event], place: usize) -> Option<usize> {
         let (Event::Start(Tag::Paragraph), Event::Start(Tag::Image { dest_url, .. })) =
             (&events[place], events.get(place + 1)?)
@@ -226,7 +230,7 @@ impl<'m> BodyReader<'_, 'm> {
     }
 }
 
-/// Target of a link: an address on the web, or a file next to the page; never a script.
+/// Target of a link: an address on the web, or a file next to the page; `#` for any other, such as a script.
 fn target(url: &str) -> String {
     let is_link = LINKS.iter().any(|link| url.starts_with(link));
     if is_link || !url.contains(':') { escaped(url) } else { String::from("#") }

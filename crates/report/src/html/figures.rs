@@ -20,9 +20,9 @@ const ROOM: usize = 1_850_000;
 /// Files of a written figure.
 #[derive(Debug, Clone, Default)]
 pub struct FigureFiles {
-    /// SVG document, if there is one.
+    /// SVG document; `None` without one.
     pub svg: Option<String>,
-    /// PNG file, if there is one.
+    /// Content of the PNG file; `None` without one.
     pub png: Option<Vec<u8>>,
 }
 
@@ -51,7 +51,8 @@ impl SizeBudget {
         Self { bytes: ROOM, figures: 0 }
     }
 
-    /// Figure with its name and its caption, which is in the page once; `file` is the path of its PNG.
+    /// HTML of a figure with its name and caption; the name is omitted if it equals the caption. If no drawing fits, it
+    /// is a link to `file`, the path of the PNG.
     pub(super) fn figure(&mut self, file: &str, [name, caption]: [&str; 2], images: &FigureFiles) -> String {
         let id = format!("caption-{}", self.figures + 1);
         let drawn = images.svg.as_deref().and_then(|svg| inline(svg, &id));
@@ -78,8 +79,8 @@ impl SizeBudget {
     }
 }
 
-/// SVG document as an element of a page, with the caption of an id: without the size and the name space that only a
-/// file needs.
+/// SVG document as an element of a page, without the size and the name space that only a file needs. `caption` is the
+/// id of its caption. `None` if the text has no SVG element with a size.
 fn inline(svg: &str, caption: &str) -> Option<String> {
     let (head, shapes) = svg.split_once('>')?;
     let attribute = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);

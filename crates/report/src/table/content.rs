@@ -12,9 +12,9 @@ use crate::printable::escaped;
 /// missing cells, and cells beyond the last column are not shown.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Table {
-    /// Caption of the table; `None` for none.
+    /// Title of the table, its caption in LaTeX; `None` without a title.
     pub title: Option<String>,
-    /// Label in a document: `\label{tab:…}` in LaTeX.
+    /// Label in a document, `\label{tab:…}` in LaTeX; `None` without a label.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub label: Option<String>,
     /// Columns from left to right.

@@ -9,11 +9,11 @@ use super::width::Alignment;
 pub struct TableColumn {
     /// Heading of the column.
     pub heading: String,
-    /// Unit of the column, without brackets.
+    /// Unit of the column, without brackets; `None` without a unit.
     pub unit: Option<String>,
     /// Alignment of the cells.
     pub alignment: Alignment,
-    /// `true` if the cells are intervals of the column before, `[low, high]`; other programs read two columns.
+    /// `true` if the cells are intervals `[low, high]` of the column before; in CSV and JSON they are two columns.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub interval: bool,
 }

@@ -10,10 +10,10 @@ use super::width::{Alignment, columns as characters};
 /// Maximum number of rows on one page; longer tables run over pages.
 const PAGE: usize = 42;
 
-/// Approximate number of characters in a line of a heading.
+/// Length up to which a heading is not broken even if the cells below are shorter, characters.
 const HEADING: usize = 9;
 
-/// Maximum length of a text in one line, characters.
+/// Maximum length of a text in one line, characters; columns with longer texts have lines of fixed width.
 const WORDS: usize = 40;
 
 impl Table {
@@ -86,7 +86,7 @@ impl LatexColumn {
     }
 }
 
-/// Heading in lines no longer than the cells below, broken at blanks only.
+/// Heading in lines no longer than `body` characters or its longest word, broken at blanks only.
 fn wrapped(heading: &str, body: usize) -> Vec<String> {
     let longest = heading.split(' ').map(characters).max().unwrap_or(0).max(body);
     let mut lines: Vec<String> = Vec::new();
@@ -104,15 +104,17 @@ fn wrapped(heading: &str, body: usize) -> Vec<String> {
 
 /// Number as siunitx reads it, and its parts.
 struct LatexNumber {
+    /// Source for siunitx, such as `0.1003(7)e-5`.
     source: String,
     is_negative: bool,
     /// Digits before and after the decimal point, of the uncertainty and of the power of ten.
     digits: [usize; 4],
+    /// `true` if the power of ten is negative.
     has_small_power: bool,
 }
 
 impl LatexNumber {
-    /// Number read from `−1.25`, `0.1003 ± 0.0007`, `1.3×10⁻⁵` or `(1.23 ± 0.04)×10⁻⁵`.
+    /// Number read from `−1.25`, `0.1003 ± 0.0007`, `1.3×10⁻⁵` or `(1.23 ± 0.04)×10⁻⁵`; `None` for any other text.
     fn parse(cell: &str) -> Option<Self> {
         let (mantissa, power) = match cell.split_once("×10") {
             Some((mantissa, power)) => {
@@ -127,7 +129,7 @@ impl LatexNumber {
             None => (false, value),
         };
         let [before, behind] = decimal(value)?;
-        // In units of the last decimal.
+        // In units of the last decimal, as siunitx expects an uncertainty in brackets.
         let doubt = match doubt {
             Some(doubt) if decimal(doubt)?[1] == behind => doubt.replace('.', "").trim_start_matches('0').to_owned(),
             Some(_) => return None,
@@ -142,7 +144,7 @@ impl LatexNumber {
     }
 }
 
-/// Digits before and after the point of a plain decimal number.
+/// Numbers of digits before and after the point of a plain decimal number; `None` for any other text.
 fn decimal(text: &str) -> Option<[usize; 2]> {
     let (before, behind) = text.split_once('.').unwrap_or((text, ""));
     let is_whole = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());

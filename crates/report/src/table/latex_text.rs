@@ -11,13 +11,15 @@ const SIGNS: &str = include_str!("latex_signs.tsv");
 const LETTERS: &str =
     "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝàáâãäåæçèéêëìíîïñòóôõöøùúûüýÿĆćČčĎďĚěŁłŃńŇňŐőŒœŘřŚśŞşŠšŤťŮůŰűŸŹźŻżŽž";
 
+/// Superscripts, and the plain characters in the same order.
 const SUPER: (&str, &str) = ("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿᵏᵖᵀᵗʰ", "0123456789+-nkpTth");
+/// Subscripts, and the plain characters in the same order.
 const SUB: (&str, &str) = ("₀₁₂₃₄₅₆₇₈₉₊₋ᵢⱼₖₘₙₒₚₐₑₛ", "0123456789+-ijkmnopaes");
 
-/// Symbols that are separate words in a heading or a caption.
+/// Symbols that are set as mathematics if they are separate words of a heading or a caption.
 const SYMBOLS: [&str; 3] = ["K", "T", "K/T"];
 
-/// Literal text.
+/// Literal text: LaTeX code that shows these characters.
 pub(super) fn escape(text: &str) -> String {
     let text = escaped(text);
     let mut out = String::with_capacity(text.len() + 8);
@@ -46,7 +48,7 @@ pub(super) fn escape(text: &str) -> String {
     out
 }
 
-/// Heading or caption: as [`escape`], with symbols that are separate words set as symbols.
+/// Heading or caption: as [`escape`], with words that are symbols set as mathematics.
 pub(super) fn heading_text(text: &str) -> String {
     let word = |word: &str| match SYMBOLS.contains(&word) {
         true => format!("${word}$"),
@@ -55,7 +57,7 @@ pub(super) fn heading_text(text: &str) -> String {
     text.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// `^` or `_` with the plain character of a super- or subscript.
+/// `^` or `_` with the plain character of a super- or subscript; `None` for any other character.
 pub(super) fn script(c: char) -> Option<(char, char)> {
     let find = |(set, plain): (&str, &str)| set.chars().zip(plain.chars()).find(|(script, _)| *script == c);
     find(SUPER).map(|(_, plain)| ('^', plain)).or_else(|| find(SUB).map(|(_, plain)| ('_', plain)))

@@ -37,11 +37,11 @@ fn pad(text: &str, before: usize, after: usize) -> String {
     format!("{}{text}{}", " ".repeat(before), " ".repeat(after))
 }
 
-/// Columns before the decimal point: of the whole text if there is none. In `12.5 ± 0.1` the first point counts.
+/// Columns before the first decimal point, as in `12.5 ± 0.1`; without a point, those of the first word.
 fn before_point(text: &str) -> usize {
     match text.split_once('.') {
         Some((before, _)) => columns(before),
-        // `12 ± 3` is aligned with its 2 before the absent point.
+        // In `12 ± 3` the point would follow the 2.
         None => text.split_once(' ').map_or_else(|| columns(text), |(before, _)| columns(before)),
     }
 }

@@ -19,7 +19,7 @@ pub struct Parameter {
     pub symbol: &'static str,
     /// Unit, in SI and radians.
     pub unit: &'static str,
-    /// Neutral value, at which the effect is absent; start value of the search for a shape parameter.
+    /// Neutral value, at which the effect is absent; for a shape parameter, the start value of a search.
     pub neutral: f64,
     /// Typical value, for scaling and for tests.
     pub typical: f64,
@@ -57,13 +57,13 @@ impl Parameter {
         Self { file: Some(ScenarioNumber { key, unit, meaning, role: NumberConversion::Value, default: None }), ..self }
     }
 
-    /// Parameter with another role in the scenario file.
+    /// Parameter with another conversion from the scenario file; unchanged if no scenario has it.
     pub(super) const fn in_role(self, role: NumberConversion) -> Self {
         let Some(number) = self.file else { return self };
         Self { file: Some(ScenarioNumber { role, ..number }), ..self }
     }
 
-    /// Parameter with a default in the scenario file.
+    /// Parameter with a default in the scenario file, in the unit of its key; unchanged if no scenario has it.
     pub(super) const fn by_default(self, default: f64) -> Self {
         let Some(number) = self.file else { return self };
         Self { file: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
@@ -129,7 +129,7 @@ pub struct SecondOrderTimeConstants<R = f64> {
     pub T3: R,
 }
 
-/// Targets of an effect in addition to its states; the equations of other targets are not evaluated.
+/// Quantities on which an effect acts, in addition to its states; equations of other quantities are not evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EffectTarget {
     /// `true` if the effect transforms the acting rudder.
@@ -191,7 +191,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         self.description().parameters
     }
 
-    /// Keys of the parameters in a scenario file; `None` for a form that needs a measured record.
+    /// Keys of the parameters in a scenario file; `None` for a form that no scenario can declare.
     fn in_file(&self) -> Option<Vec<ScenarioNumber>> {
         self.parameters().iter().map(|parameter| parameter.file).collect()
     }
@@ -229,7 +229,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         None
     }
 
-    /// `true` for a moment that depends on time alone; it then belongs to one record and does not apply to other
+    /// `true` for a moment that depends explicitly on time; it then belongs to one record and does not apply to other
     /// records.
     fn is_time_dependent(&self) -> bool {
         false
@@ -256,13 +256,13 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         self.random_heading(&typical).is_some()
     }
 
-    /// Spectrum of a random heading that is added to the observed heading; the deterministic response ignores it.
-    /// `None` for an effect that is not random.
+    /// Narrow-band random heading that is added to the observed heading; the deterministic response ignores it. `None`
+    /// for an effect that is not random, or with a standard deviation of zero.
     fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
         None
     }
 
-    /// Shortest time constant of the effect, s, which steps must resolve.
+    /// Shortest time constant of the effect, s, which steps must resolve; infinite for an algebraic effect.
     fn min_time_constant(&self, _p: &[f64]) -> f64 {
         f64::INFINITY
     }
@@ -295,7 +295,8 @@ pub trait EffectEquations<R: Real> {
     /// Rates of the states; `before` is the rudder before this effect, rad.
     fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, _rate: &mut [R]) {}
 
-    /// Update of memory that follows no differential equation, once a step.
+    /// Update of memory that follows no differential equation (backlash), once at the end of every step; `before` is
+    /// the rudder before this effect, rad.
     fn update_memory(&self, _p: &[R], _z: &mut [R], _before: R) {}
 
     /// Factors on damping and gain.
@@ -308,7 +309,7 @@ pub trait EffectEquations<R: Real> {
         R::from(0.0)
     }
 
-    /// Time constants of the second order; `None` except for the effect that raises the order of the response.
+    /// Time constants T₂ and T₃; `None` except for the effect that makes the response second-order.
     fn second_order_time_constants(&self, _p: &[R]) -> Option<SecondOrderTimeConstants<R>> {
         None
     }
@@ -343,15 +344,15 @@ pub struct RecordScales {
     pub rudder: f64,
     /// Maximum over the durations of the records, s.
     pub duration: f64,
-    /// Usual time between rows, s.
+    /// Maximum over the records of the usual time between rows, s.
     pub spacing: f64,
-    /// Approach speed, m/s, if all records have a measured speed.
+    /// Approach speed, m/s; `None` unless all records have a measured speed.
     pub speed: Option<f64>,
-    /// Approach speed, m/s, if all records have a measured sway velocity.
+    /// Approach speed, m/s; `None` unless all records have a measured sway velocity.
     pub sway: Option<f64>,
-    /// Mean square relative wind speed, m²/s², if all records have it.
+    /// Mean square of the relative wind speed, m²/s²; `None` unless all records have it.
     pub wind_square: Option<f64>,
-    /// Root mean square propeller revolutions, 1/s, if all records have them and they change.
+    /// Root mean square of the propeller revolutions, 1/s; `None` unless all records have them and they change.
     pub propeller: Option<f64>,
     /// First and last time, s, of the record in which an effect that depends on time would act.
     pub span: [f64; 2],
@@ -370,7 +371,8 @@ pub struct Prior {
     pub highest: f64,
     /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
-    /// Index of a reference parameter of the effect: value and prior refer to the difference from it.
+    /// Index of the parameter of the effect from which this parameter is measured: value and prior are those of the
+    /// difference. `None` for a parameter that is fitted directly.
     pub reference: Option<usize>,
 }
 
@@ -387,7 +389,7 @@ impl Prior {
         Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, reference: None }
     }
 
-    /// Fixed value.
+    /// Prior of a parameter that is not fitted and keeps this value.
     pub fn fixed(value: f64) -> Self {
         Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, reference: None }
     }

@@ -59,10 +59,10 @@ const UNBOUNDED: f64 = f64::INFINITY;
 #[rustfmt::skip]
 pub(super) static LIST: [ListedEffect; 22] = [
     Rust(|| Arc::new(SecondOrder)),
-    // Norrbin (1963) for r|r| and r³; Bech (1968) for the polynomial T₁T₂ r'' + (T₁+T₂) r' + K H(r) = K (δ + T₃ δ'),
-    // H = b₃r³ + b₂r² + b₁r + b₀: the second-order effect with r³ of K b₃/T, r² of K b₂/T, 1/T times K b₁, δ_r = −b₀.
-    // Divided by T a coefficient stays regular when 1/T passes through zero. Without dimension: r³ within 8, r|r|
-    // within 1.2, r² (damping that differs by side) within 0.4.
+    // Norrbin (1963) for r|r| and r³; Bech (1968) for the polynomial T₁T₂ r'' + (T₁+T₂) r' + K H(r) = K (δ + T₃ δ'), H
+    // = b₃r³ + b₂r² + b₁r + b₀. It is the second-order effect with n₃/T = K b₃/T, n₁₁/T = K b₂/T, 1/T times K b₁, and
+    // δ_r = −b₀. Divided by T a coefficient stays regular when 1/T passes through zero. Nondimensional prior standard
+    // deviations: 8 for r³, 1.2 for r|r|, 0.4 for r² (damping that differs by side).
     row(["nonlinear_damping", "r³", "T r' + r + n₃ r³ = K (δ + δ_r)"],
         EffectTarget::MOMENT, "-n3_over_T * r * r * r",
         &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])
@@ -78,12 +78,13 @@ pub(super) static LIST: [ListedEffect; 22] = [
         &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])
             .in_file("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").in_role(OverT)],
         |_| Some([0.0, 0.4, UNBOUNDED])),
-    // A moderate wind has the moment of 0.025 rad of rudder.
+    // Prior standard deviation: the moment of 0.05 rad of rudder in a beam wind of the root mean square speed.
     weather(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
         "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)",
         &[Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])],
         |records| Some([0.0, 0.05 / records.wind_square?, UNBOUNDED])),
-    // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
+    // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction. A moderate wind has the moment of 0.025 rad of
+    // rudder.
     weather(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
         "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))",
         &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6])
@@ -109,7 +110,7 @@ pub(super) static LIST: [ListedEffect; 22] = [
     // Angles below g have no effect; larger angles act with g subtracted.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
         EffectTarget::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
-        &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Width of a dead band.")],
+        &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Half width of a dead band.")],
         |records| Some(Backlash::prior(records))),
     // The gain is 1 + a to starboard and 1 − a to port.
     row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
@@ -169,8 +170,8 @@ static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
 
 /// Every effect in every form, in the order of reports.
 ///
-/// Constants of the record are at their neutral values: approach speed 1 m/s, propeller 1/s, first time
-/// 0, edge of a lasting moment 1 s.
+/// Constants of the record are at their neutral values: approach speed 1 m/s, one propeller revolution a second, first
+/// time 0 s, edge of a lasting moment 1 s.
 pub fn all() -> Vec<Arc<dyn Effect>> {
     ALL.clone()
 }

@@ -1,8 +1,8 @@
 //! Effects that a first-order response lacks: formulas in one list, and a file for each effect with memory or states.
 //!
 //! An effect is structure only; its parameter values are a separate slice in the order of [`Effect::parameters`]. The
-//! same effect simulates an undeclared influence and is a candidate when a residual is traced. With all parameters at
-//! their neutral values, a model with the effect equals the model without it.
+//! same effect acts in a simulation and is a candidate explanation of a residual. With all parameters at their neutral
+//! values, a model with the effect equals the model without it.
 //!
 //! An effect can transform the acting rudder (with memory), add states, scale damping and gain, add a yaw acceleration,
 //! and add to the observed heading; all are optional. To add an effect, add a row to `list.rs`.

@@ -19,7 +19,7 @@ pub struct ScenarioNumber {
     pub meaning: &'static str,
     /// Conversion from the entry to the parameter.
     pub role: NumberConversion,
-    /// Default; `None` for a required entry.
+    /// Default, in the unit of the key; `None` for a required entry.
     pub default: Option<f64>,
 }
 

@@ -43,7 +43,8 @@ impl Effect for SteeringLag {
                 CandidateEffect::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
-                // Records with a coarser sampling interval do not resolve the lag of a ship.
+                // A lag below a quarter of the sampling interval is not resolved. If this exceeds the maximum lag,
+                // there is no candidate.
                 let shortest = Some(MIN_LAG_S.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 CandidateEffect::new(
                     *self,

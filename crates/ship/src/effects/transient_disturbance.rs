@@ -85,7 +85,8 @@ impl Effect for TransientDisturbance {
             let instant = Prior::uniform([start + END_MARGIN_SHARE * duration, end - END_MARGIN_SHARE * duration]);
             return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
         }
-        // A squall begins and ends within the record.
+        // The centre stays a quarter of the maximum duration away from both ends, so at least three quarters of every
+        // pulse are in the record.
         let margin = MAX_DURATION_SHARE * 0.25 * duration;
         let range = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * duration];
         let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(range)];

@@ -38,7 +38,8 @@ impl Response {
         None
     }
 
-    /// Yaw acceleration (rad/s²) of the first-order balance in a steady turn.
+    /// Right-hand side f of the response (rad/s²) at a yaw rate (rad/s) and rudder (rad), with settled states; zero in
+    /// a steady turn.
     ///
     /// At constant yaw rate and rudder the states of effects settle linearly, so one Newton step per state is exact.
     fn excess(&self, yaw_rate: f64, rudder: f64, memory: &mut Memory) -> f64 {
@@ -67,7 +68,7 @@ struct Memory {
     rate: Vec<f64>,
 }
 
-/// Root of a function between two arguments, by bisection; `first` is the value at the first argument.
+/// Root of a function between two arguments, by bisection; `first` is the value of the function at the first argument.
 fn root([mut near, mut far]: [f64; 2], first: f64, function: &mut impl FnMut(f64) -> f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (near + far);

@@ -87,7 +87,7 @@ fn mariner(id: &'static str, name: &'static str, source: &'static str, model: Sh
 }
 
 /// Equations of [`hull`].
-pub fn equations() -> Abkowitz {
+pub fn hull_model() -> Abkowitz {
     Abkowitz::new(PARTICULARS, DERIVATIVES)
 }
 
@@ -100,7 +100,7 @@ pub fn hull() -> Ship {
         "mariner",
         "Mariner class, 15 kn, hull",
         "Chislett and Strøm-Tejsen (1965), in the Marine Systems Simulator",
-        ShipModel::Hull(Arc::new(equations())),
+        ShipModel::Hull(Arc::new(hull_model())),
     )
 }
 

@@ -85,7 +85,7 @@ pub fn all() -> Vec<Ship> {
     ]
 }
 
-/// Ship with this identifier; `None` if there is none.
+/// Ship with this identifier; `None` for an unknown identifier.
 pub fn find(id: &str) -> Option<Ship> {
     all().into_iter().find(|ship| ship.id == id)
 }

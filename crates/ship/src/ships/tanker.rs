@@ -23,7 +23,7 @@ const TURNING: [f64; 3] = [2.020, -0.752, -0.231];
 const THRUST: [f64; 3] = [-0.00695, -0.00063, 0.000_035_4];
 /// Thrust deduction t.
 const DEDUCTION: f64 = 0.22;
-/// Coefficients un and nn of c², the squared speed of the propeller stream.
+/// Coefficients un (m) and nn (m²) of the squared speed of the propeller stream, c² = un u n + nn n².
 const STREAM: [f64; 2] = [0.605, 38.2];
 
 /// uu, vv, ccδδ and ccβδ of X.
@@ -95,7 +95,7 @@ impl Hull for TankerHull {
 }
 
 /// Equations of [`ship`]. Thrust balances the resistance: X_uu U²/L + (1 − t) T = 0.
-pub fn equations() -> TankerHull {
+pub fn hull_model() -> TankerHull {
     let Particulars { length: L, speed: U } = PARTICULARS;
     let [uu, un, nn] = THRUST;
     let constant = (uu + X[0] / (1.0 - DEDUCTION)) * U * U / L;
@@ -114,6 +114,6 @@ pub fn ship() -> Ship {
         particulars: Some(PARTICULARS),
         rudder_rate: Some(2.33f64.to_radians()),
         largest_rudder: None,
-        model: ShipModel::Hull(Arc::new(equations())),
+        model: ShipModel::Hull(Arc::new(hull_model())),
     }
 }

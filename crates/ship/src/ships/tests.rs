@@ -177,7 +177,7 @@ fn linear_equations_are_the_slopes_of_the_hull() {
     let mut tanker = kvlcc2::FULL_SCALE;
     tanker.rudder.gammaR = BySign { positive: 0.5, negative: 0.5 };
     let tanker = Mmg::at_speed(tanker, 8.0).expect("balances");
-    let cargo_ship = mariner::equations();
+    let cargo_ship = mariner::hull_model();
     let hulls: [(&dyn Hull, PrimeSwayYaw); 2] =
         [(&tanker, tanker.linearised()), (&cargo_ship, cargo_ship.linearised())];
     for (hull, PrimeSwayYaw { M, N, b }) in hulls {

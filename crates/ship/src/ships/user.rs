@@ -27,7 +27,7 @@ pub enum ShipError {
         /// Reason, a sentence.
         reason: &'static str,
     },
-    /// Error of a number that gives a parameter of the response outside the range of ships.
+    /// Number that gives a parameter of the response outside the range of ships.
     #[error(
         "{symbol} gives {} = {}, outside the range {} to {} {}",
         .parameter.symbol, ShortNumber(*.value), ShortNumber(.parameter.lowest), ShortNumber(.parameter.highest), .parameter.unit
@@ -125,7 +125,7 @@ pub enum HullError {
 
 /// MMG hull from particulars, with the identifier `user`: every coefficient has its prior mean.
 ///
-/// Fails for particulars outside the range of ships.
+/// Fails for particulars outside the range of ships, or whose mean hull has no steady approach.
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
     let hull = Mmg::at_speed(prior::hull_prior(particulars)?.parameters, particulars.speed)?;
     let HullParticulars { length, speed, .. } = *particulars;

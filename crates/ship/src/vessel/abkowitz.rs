@@ -1,8 +1,8 @@
 //! Abkowitz model: one Taylor series for the forces on hull, propeller and rudder together.
 //!
 //! Prime system ½ρL²U² with the instantaneous speed U: surge perturbation u' = (u − U₀)/U, sway v' = v/U, yaw r' = r
-//! L/U. Series: Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr
-//! holds −m', Xrv holds m'), so mass appears on the left only.
+//! L/U. Series: Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr holds −m', Xrv
+//! holds m'), so mass appears on the left only.
 //!
 //! The rudder of the source is positive to port. Its sign is changed here only; [`Abkowitz::new`] takes the
 //! coefficients as printed.
@@ -59,7 +59,7 @@ pub struct LateralDerivatives {
     pub uud: f64,
     pub vdd: f64,
     pub vvd: f64,
-    /// Constant force of a single propeller; with `zero_u` and `zero_uu` the asymmetry of the ship.
+    /// Constant force or moment of a single propeller; with `zero_u` and `zero_uu` the asymmetry of the ship.
     pub zero: f64,
     pub zero_u: f64,
     pub zero_uu: f64,

@@ -1,9 +1,12 @@
 //! MMG standard model: hull, propeller and rudder as separate parts (Yasukawa and Yoshimura 2015).
 //!
-//! Every equation is divided by ½ρLd, so forces read as X' U² (m²/s²), the moment as N' U² after a further L, and the
-//! density of the water drops out. In the velocities (u, v, rL):
+//! Every equation is divided by ½ρLd, and the moment by a further L. Forces then read as X' U², the moment as N' U²
+//! (m²/s²), and the density of the water drops out. In the velocities (u, v, rL):
 //!
-//! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)² (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
+//! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)²
+//!
+//! (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
+//!
 //! (I_z' + x_G'² m' + J_z') L² r' + x_G' m' L v' = N − x_G' m' u (rL)
 //!
 //! β = atan(−v/u) and v are taken at midship. The rudder is positive to starboard. Wake and flow straightening change
@@ -36,7 +39,8 @@ pub enum MmgError {
         /// Rejected value.
         value: f64,
     },
-    /// Inertia in sway and yaw that is not positive, given by the determinant of the prime mass matrix.
+    /// Inertia in surge, sway or yaw that is not positive; the value is the determinant of the prime mass matrix of
+    /// sway and yaw.
     #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {0})")]
     Inertia(f64),
     /// Thrust that balances the resistance at no advance ratio.
@@ -72,7 +76,8 @@ pub struct Mmg<R = f64> {
 impl<R: Real> Mmg<R> {
     /// Hull whose straight approach at `speed` (m/s) is steady; the revolutions follow from the balance of thrust.
     ///
-    /// Fails for parameters that are not positive where required, or whose thrust cannot balance the resistance.
+    /// Fails for parameters that are not positive where required, that leave no positive inertia, or whose thrust
+    /// cannot balance the resistance.
     pub fn at_speed(parameters: Parameters<R>, speed: f64) -> Result<Self, MmgError> {
         positive("approach speed", speed)?;
         let speed_per_revolution = speed_per_revolution(&parameters)?;

@@ -3,7 +3,10 @@
 //! Lengths in L, speeds in the approach speed U₀, times in L/U₀; n is the propeller rate relative to the approach, δ
 //! the rudder angle, positive to starboard. Two forms are polynomials of the whole ship:
 //!
-//! r' = N_v u v + N_r u r + N_δ q δ_e + … v' = Y_v u v + Y_r u r + Y_δ q δ_e + …
+//! r' = N_v u v + N_r u r + N_δ q δ_e + …
+//!
+//! v' = Y_v u v + Y_r u r + Y_δ q δ_e + …
+//!
 //! u' = x₀ [(n² − k n u)/(1 − k) − u|u|] + X_vr v r + X_rr r² − X_δδ q δ_e²
 //!
 //! with the rudder inflow w = e u + (1 − e) n, q = w², and δ_e = δ + δ_r − b |r|/w (b: flow straightening that differs
@@ -27,7 +30,7 @@ pub use self::wind::wind_accelerations;
 use super::mmg::{Mmg, Parameters};
 use super::prior::{HullParticulars, HullPrior, hull_prior};
 
-/// Coefficient of a hull with its prior.
+/// Coefficient of a hull model with its normal prior; dimensionless (prime system), δ_r in rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullCoefficient {
     /// Name in files.
@@ -38,7 +41,7 @@ pub struct HullCoefficient {
     pub mean: f64,
     /// Prior standard deviation.
     pub sd: f64,
-    /// Minimum and maximum valid value.
+    /// Minimum and maximum valid value; infinite without a bound.
     pub ends: [f64; 2],
 }
 
@@ -73,7 +76,7 @@ const FREE: [&str; 23] = [
     "gammaR-port",
 ];
 
-/// Bounds, lower and upper, of a free coefficient of the MMG model.
+/// Bounds, lower and upper, of a free coefficient of the MMG model; infinite without a bound.
 fn ends_of(key: &str) -> [f64; 2] {
     match key {
         "R0" => [0.002, 0.2],
@@ -86,7 +89,8 @@ fn ends_of(key: &str) -> [f64; 2] {
     }
 }
 
-/// Possible physical cause of a departure of a coefficient from its prior mean, for messages; `None` if there is none.
+/// Possible physical cause of a departure of a coefficient from its prior mean, for messages; `None` if no cause is
+/// known.
 pub fn departure_cause(key: &str) -> Option<&'static str> {
     Some(match key {
         "delta_r" => "a bent rudder, a zero error of the rudder angle, or a bank on one side",
@@ -142,7 +146,7 @@ pub struct HullForm {
 
 impl HullForm {
     /// Candidate forms for a ship, with priors from the particulars: the two polynomials, and the MMG model. Without
-    /// particulars, only the polynomials with the priors of any ship.
+    /// particulars, or with particulars outside the range of ships, only the polynomials with the priors of any ship.
     pub fn candidates(particulars: Option<&HullParticulars>) -> Vec<Self> {
         let prior = particulars.and_then(|particulars| hull_prior(particulars).ok());
         let polynomials = prior.as_ref().and_then(Self::polynomials).unwrap_or_else(|| {
@@ -216,7 +220,7 @@ impl HullForm {
         &self.coefficients
     }
 
-    /// Prior covariance of the coefficients.
+    /// Prior covariance of the coefficients, in their order.
     pub fn covariance(&self) -> &DMatrix<f64> {
         &self.covariance
     }
@@ -230,7 +234,8 @@ impl HullForm {
         }
     }
 
-    /// Hull with these coefficient values; `None` if they are not valid for a ship.
+    /// Hull with these coefficient values, in the order of [`coefficients`](Self::coefficients); `None` if their number
+    /// is wrong or they are not valid for a ship.
     pub fn with_coefficients<R: Real>(&self, values: &[R]) -> Option<PrimeHull<R>> {
         let (&windage, values) = values.split_last()?;
         let in_calm = match &self.equations {

@@ -41,8 +41,9 @@ pub struct Current {
 /// V = [x(ψ + 2π) − x(ψ)] / [t(ψ + 2π) − t(ψ)], for ψ from a heading change of 180° on.
 ///
 /// Heading in rad, not wrapped; track north and east in m; time in s; columns of equal length, from the execute on.
-/// `None` for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current
-/// that changes within a round, and wind, are included in the result.
+/// `None` for columns of different length, a turn of less than 720° or fewer than three valid pairs. The pairs overlap,
+/// so their scatter is not divided by their number. A current that changes within a round, and wind, are included in
+/// the result.
 pub fn estimate_current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
     let rows = time.len();
     if rows < 2 || heading.len() != rows || track.len() != rows {
@@ -85,7 +86,7 @@ pub fn estimate_current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Op
 mod tests {
     use super::*;
 
-    /// Two rounds in a current, the first quarter of them slower.
+    /// Turn of some rounds to one side (±1) at a constant rate, in a uniform current north and east, m/s.
     fn turn(rounds: f64, side: f64, [north, east]: [f64; 2]) -> (Vec<f64>, Vec<f64>, Vec<[f64; 2]>) {
         let time: Vec<f64> = (0..=2000).map(|row| f64::from(row) * 0.5).collect();
         let rate = side * rounds * TAU / 1000.0;

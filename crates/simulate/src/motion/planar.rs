@@ -14,7 +14,7 @@ pub struct MotionError {
     value: f64,
 }
 
-/// Speed and drift of one ship.
+/// Equations of surge and sway of one ship: coefficients, length and approach speed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planar {
     /// Coefficients of the equations, dimensionless.
@@ -26,7 +26,8 @@ pub struct Planar {
 }
 
 impl Planar {
-    /// Planar motion of a ship of length `length` (m) and approach speed `approach_speed` (m/s).
+    /// Planar motion of a ship of length `length` (m) and approach speed `approach_speed` (m/s). The coefficients are
+    /// clamped to their bounds.
     ///
     /// Fails with [`MotionError`] for a length or speed that is not positive and finite.
     pub fn new(coefficients: PlanarCoefficients, length: f64, approach_speed: f64) -> Result<Self, MotionError> {

@@ -10,7 +10,7 @@ use crate::weather::{Weather, WeatherCell};
 pub(crate) struct ShipInWeather<'a, D: ?Sized> {
     ship: &'a D,
     wind: Option<Wind>,
-    /// Approach speed of the ship, m/s, for equations without a speed.
+    /// Approach speed of the ship, m/s, for equations without a speed; `None` if it is unknown.
     approach_speed: Option<f64>,
     /// Time constant of the gyrocompass, s; 0 without lag.
     gyro_lag: f64,

@@ -1,4 +1,5 @@
-//! Interface of a propagator, and the location of an awaited heading in a step.
+//! Interface of a propagator, and event location: the instant within a step at which the heading reaches the angle of
+//! the next execute.
 
 use ship::first_order::State;
 
@@ -32,12 +33,12 @@ pub(crate) trait Propagator {
     fn record_rows(&mut self, _path: &RudderPath, _limits: &RowLimits, _rows: &mut Sampler) {}
 }
 
-/// Time, awaited heading and base course that limit how far rows are recorded in one call.
+/// Limits up to which rows are recorded in one call: time, heading of the next execute and base course.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowLimits {
-    /// Latest end, s.
+    /// End of the recorded rows, s; a row at this time is not recorded.
     pub before: f64,
-    /// Awaited heading whose crossing ends the sequence.
+    /// Heading whose crossing ends the sequence; `None` if no heading triggers the next execute.
     pub watch: Option<AwaitedHeading>,
     /// Base course, rad, for the check of divergence.
     pub base: f64,
@@ -62,7 +63,7 @@ pub(crate) fn acting_segment<'a>(path: &'a RudderPath, cursor: &mut usize, t: f6
     &segments[*cursor]
 }
 
-/// Awaited heading: `side` · (ψ − base) ≥ `angle`.
+/// Heading that triggers the next execute: `side` · (ψ − base) ≥ `angle`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AwaitedHeading {
     /// Base course, rad.
@@ -77,12 +78,12 @@ pub(crate) struct AwaitedHeading {
 const EVENT_TOLERANCE: f64 = 1e-13;
 
 impl AwaitedHeading {
-    /// Excess of the deviation over the awaited deviation, rad.
+    /// Excess of the deviation of a heading (rad) over the deviation at the execute, rad; negative before the execute.
     pub fn excess(&self, heading: f64) -> f64 {
         self.side * (heading - self.base) - self.angle
     }
 
-    /// Time from the beginning of a step to the first crossing in it, s; `None` if there is none.
+    /// Time from the beginning of a step to the first crossing in it, s; `None` without a crossing.
     ///
     /// The step leads from `from`, before the crossing, to `end` in `h` seconds. The yaw rate is monotone in the step,
     /// so the heading has at most one extremum, which is located when the yaw rate changes sign.

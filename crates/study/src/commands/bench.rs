@@ -93,7 +93,7 @@ pub fn run_benchmark(
     are_known(&request.methods, scenarios.iter().flat_map(Scenario::labels), "--method", "method")?;
     let (mut studies, mut absent) = (Vec::new(), Vec::new());
     for scenario in scenarios.into_iter().filter(|set| request.sets.is_empty() || request.sets.contains(&set.name)) {
-        let Some(mut scenario) = scenario.with_methods(&request.methods) else { continue };
+        let Some(mut scenario) = scenario.restricted_to_methods(&request.methods) else { continue };
         for (label, identifier) in methods_of_caller {
             scenario = scenario.with_identifier(label, Arc::clone(identifier))?;
         }

@@ -33,7 +33,9 @@ pub struct ListRequest {
     pub ship: ShipOptions,
 }
 
-/// Prints the list.
+/// Prints a list.
+///
+/// Fails if particulars are given for a list other than that of priors, or if they do not determine the priors.
 pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure> {
     let what = request.what;
     if what != ListSubject::Priors && !(request.columns.is_none() && request.ship.is_empty()) {

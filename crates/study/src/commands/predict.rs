@@ -26,7 +26,7 @@ const FORM: &str = "trial-form.md";
 
 /// Predicts, prints the results, writes `predict.json`, `report.md`, `report.html`, tables and figures.
 ///
-/// Fails if a model or a record cannot be read, or if hardly any drawn ship completes a manoeuvre.
+/// Fails if a model or a record cannot be read, or as [`predict()`] does.
 pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     if !request.ballast.is_empty() && request.replays.is_empty() {

@@ -113,7 +113,7 @@ fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &CommonOptions) -> R
     write_results(&stored, &folder, &theme, style.figures, common)
 }
 
-/// Program that opens a file in the user's browser.
+/// Program that opens a file in the user's browser, and its options.
 #[cfg(target_os = "macos")]
 const OPENER: (&str, &[&str]) = ("open", &[]);
 #[cfg(windows)]

@@ -17,7 +17,7 @@ use crate::screen;
 use crate::terminal::Terminal;
 use crate::views::publish::write_results;
 
-/// Runs a scenario, or one shard of it, and publishes it as `study report` does.
+/// Runs a scenario and publishes it as `study report` does; a single shard is run and stored, but not published.
 pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
     if !scenario.unknown_output.is_empty() && !common.quiet {

@@ -1,4 +1,4 @@
-//! JSON output of commands that write no file, as `--format json` prints it.
+//! JSON output of commands that write no JSON document to a file, as `--format json` prints it.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-/// JSON document of a command that has no file of its own.
+/// JSON document of a command that writes it to no file.
 pub trait CommandAnswer: Serialize + JsonSchema {
     /// Name and version of the document, such as `list/1`.
     const SCHEMA: &'static str;

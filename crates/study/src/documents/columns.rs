@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Columns of equal length, each with a name that includes the unit.
+/// Columns of numbers, each with a name that includes the unit. Cells below the end of a short column are empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvColumns(Vec<(String, Vec<f64>)>);
 
@@ -13,7 +13,7 @@ fn digits(value: f64) -> String {
 }
 
 impl CsvColumns {
-    /// Adds a column on the right.
+    /// Adds a column on the right, of any length.
     pub fn push(&mut self, name: impl Into<String>, values: Vec<f64>) {
         self.0.push((name.into(), values));
     }

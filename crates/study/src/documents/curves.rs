@@ -1,5 +1,6 @@
-//! Curves of a trace, stored with `trace.json`: every record with the replays before and after, its innovations, and
-//! the moment that the base lacks. They are written after the analysis; figures are made from the tables read back.
+//! Curves of a trace, stored with `trace.json`: every record with its replays by the base ("before") and by the average
+//! of the structures ("after"), its innovations, and the moment that the base lacks. They are written after the
+//! analysis; figures are made from the tables read back.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,10 +25,10 @@ pub struct TracedRecord {
     pub trial: Trial,
     /// Replays of the recorded rudder by the base and by the average of the structures.
     pub replays: [Replay; 2],
-    /// Half width of the 95 % band of the second replay at its rows, rad.
+    /// Half width of the 95 % band of the second replay at its rows, rad; `None` if the table has no band.
     pub band: Option<Vec<f64>>,
-    /// Times, s, of the innovations of the most probable structure, and the innovations in standard deviations, if it
-    /// was fitted.
+    /// Times, s, of the innovations of the most probable structure, and the innovations in standard deviations; `None`
+    /// for a held-out record.
     pub innovations: Option<[Vec<f64>; 2]>,
 }
 
@@ -35,9 +36,10 @@ pub struct TracedRecord {
 pub struct TraceCurves {
     /// Records in the order of the document.
     pub records: Vec<TracedRecord>,
-    /// Tables of the missing moments: over time, and over the channels.
+    /// Tables of the missing moments, in the order of the document: over time, and over the channels.
     pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
-    /// Times, s, and the heading residual of the first record after every step of the staircase, deg.
+    /// Times, s, as a single column, and the heading residual of the first record, deg, a column for every step of the
+    /// staircase; both empty without a staircase.
     pub staircase: [Vec<Vec<f64>>; 2],
 }
 
@@ -46,12 +48,12 @@ pub fn slugs(record_names: &[String]) -> Vec<String> {
     unique_names(record_names.iter().map(|name| slug(name)))
 }
 
-/// File name suffix of a record: empty for the first.
+/// File name suffix of the record with the index `number`: empty for the first.
 pub fn suffix(names: &[String], number: usize) -> String {
     if number == 0 { String::new() } else { format!("-{}", slugs(names)[number]) }
 }
 
-/// Column prefixes of the models before and after.
+/// Column prefixes of the base and of the average of the structures.
 const MODELS: [&str; 2] = ["before", "after"];
 
 /// CSV table of a record and its replays.
@@ -82,7 +84,7 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
 /// Name of the table of the staircase.
 const STAIRCASE: &str = "staircase.csv";
 
-/// Name of the column of a step.
+/// Column name of the residual after a step of the staircase.
 fn column_of(step: usize) -> String {
     format!("step_{step}_residual_deg")
 }

@@ -11,8 +11,8 @@ use predict::{DrawnEstimate, DrawnParameters, EstimateSampler, PredictDocument};
 /// Name of the file with the drawn ships or estimates.
 pub const DRAWS: &str = "draws.parquet";
 
-/// Columns of a prediction: number of the ship, its parameters, and its characteristics in every manoeuvre; missing if
-/// a structure or a ship lacks them.
+/// Columns of a prediction: number of the ship, its parameters, and its characteristics in every manoeuvre. A cell is
+/// missing if the structure lacks the parameter or the ship the characteristic.
 fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     let drawn = &predicted.drawn;
     let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
@@ -58,7 +58,7 @@ struct EstimateRow<'a> {
 }
 
 impl EstimateRow<'_> {
-    /// A function of the first three parameters, 1/T, K/T and δ_r; missing if it is infinite.
+    /// Value of a function of the first three parameters, 1/T, K/T and δ_r; `None` if it is not finite.
     fn number(&self, of: fn([f64; 3]) -> f64) -> Option<f64> {
         let base = std::array::from_fn(|place| self.drawn.parameters[place].1);
         Some(of(base)).filter(|value| value.is_finite())
@@ -84,7 +84,8 @@ fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
     .collect()
 }
 
-/// Writes the given number of draws from every estimate, under the name of its method, with this seed.
+/// Writes the given number of draws from every estimate, each row with the name of its method; `seed` is that of the
+/// draws.
 ///
 /// Fails if an estimate cannot be sampled, or if the file cannot be written.
 pub fn write_estimates<'a>(

@@ -25,9 +25,9 @@ pub struct MissingMomentCurves {
     pub over: Vec<ChannelCurve>,
 }
 
-/// Missing moment over one channel, in the units of figures.
+/// Missing moment over one channel; the channel is in deg or deg/s if it is an angle or a yaw rate, else in m/s.
 pub struct ChannelCurve {
-    /// The channel; `None` if no table has it.
+    /// The channel; `None` if no channel has the column name of the entry.
     pub over: Option<MomentChannel>,
     /// The channel at the times of the moment.
     pub rows: Vec<f64>,
@@ -81,6 +81,7 @@ fn column(over: MomentChannel) -> (&'static str, bool) {
     }
 }
 
+/// Values of a channel as in the tables: converted to degrees if it is an angle.
 fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
     if column(over).1 { degrees(values) } else { values.to_vec() }
 }
@@ -122,13 +123,14 @@ pub fn table_over_channels(missing: &MissingMoment) -> String {
     columns.to_csv()
 }
 
-/// Effects of some explanations, without repetition.
+/// Ids of the effects of the explanations at some places, without repetition.
 fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
     let explanations = places.iter().filter_map(|place| missing.explanations.get(*place));
     distinct(explanations.flat_map(|explanation| &explanation.effects).map(|(id, _)| (*id).to_owned()))
 }
 
-/// Entry of a record of this file and name; `stem` begins the names of its tables.
+/// Entry of a record of this file and name; `stem` begins the names of its tables. `explains` is `false` if the best
+/// explanation is only a candidate.
 pub fn entry(
     missing: &MissingMoment,
     [file, name, stem]: [&str; 3],

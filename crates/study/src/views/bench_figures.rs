@@ -4,10 +4,12 @@ use campaign::benchmark::board::{Leaderboard, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
-use campaign::statistics::MIN_SUMMARISED_VALUES;
+use campaign::statistics::{MIN_SUMMARISED_VALUES, grouped};
 use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
 use report::palette::Look;
 use report::{CurveOrigin, PageFigure};
+
+use super::key_rows::tint;
 
 /// Maximum ratio of a score to that of the reference; a larger one is shown as an arrow.
 const MAX_RATIO: f64 = 100.0;
@@ -66,18 +68,24 @@ fn axis_title(task: BenchTask) -> &'static str {
     }
 }
 
-/// Finding: the methods that are significantly better than the reference, with the tasks.
-fn finding(boards: &[&Leaderboard], reference: &str) -> String {
+/// Methods that are significantly better than the reference on a board.
+fn winners(board: &Leaderboard) -> impl Iterator<Item = &str> {
     let is_better = |standing: &&LeaderboardRow| {
         let upper = standing.ratio.and_then(|ratio| ratio.ci95?[1]);
         upper.is_some_and(|upper| upper < 1.0)
     };
-    let of_task = |board: &&Leaderboard| {
-        let better = board.standings.iter().filter(is_better).map(|standing| standing.method.as_str());
-        let better = better.collect::<Vec<_>>().join(" and ");
-        (!better.is_empty()).then(|| format!("{better} ({})", axis_title(board.task)))
-    };
-    match boards.iter().filter_map(of_task).collect::<Vec<_>>()[..] {
+    board.standings.iter().filter(is_better).map(|standing| standing.method.as_str())
+}
+
+/// Finding: the methods that are significantly better than the reference, with the tasks.
+fn finding(boards: &[&Leaderboard], reference: &str) -> String {
+    let of_task = |board: &Leaderboard| winners(board).collect::<Vec<_>>().join(" and ");
+    let won = grouped(boards.iter().filter(|board| !of_task(board).is_empty()), |board| of_task(board));
+    let won = won.iter().map(|(methods, boards)| {
+        let tasks: Vec<&str> = boards.iter().map(|board| axis_title(board.task)).collect();
+        format!("{methods} ({})", tasks.join(", "))
+    });
+    match won.collect::<Vec<_>>()[..] {
         [] => format!("no method clearly beats {reference}"),
         ref some => format!("{reference} is clearly beaten by {}", some.join(", ")),
     }
@@ -85,7 +93,16 @@ fn finding(boards: &[&Leaderboard], reference: &str) -> String {
 
 fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
-    let rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
+    let mut rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
+    // The methods of the finding are on top, in full colour.
+    let is_winner = |method: &str| boards.iter().any(|board| winners(board).any(|winner| winner == method));
+    rivals.sort_by_key(|method| !is_winner(method));
+    let is_plain = !rivals.iter().any(|method| is_winner(method));
+    let look = |method: &str| {
+        let look = curve_origin(method).look();
+        let colour = if is_plain || is_winner(method) { look.colour } else { tint(look.colour) };
+        Look { colour, ..look }
+    };
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
     if rivals.is_empty() || !has_ratios {
         return None;
@@ -94,7 +111,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
             let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
-            let look = Look { hollow: true, ..curve_origin(method).look() };
+            let look = Look { hollow: true, ..look(method) };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
@@ -106,7 +123,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             let value = ratio.value.filter(|value| *value <= MAX_RATIO).unwrap_or(f64::INFINITY);
             let end = |end: Option<f64>| end.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
             let interval = ratio.ci95.map(|ends| ends.map(end)).filter(|_| value.is_finite());
-            vec![RowItem::new("", RowKind::Mark(curve_origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
+            vec![RowItem::new("", RowKind::Mark(look(method), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
             x: AxisSpec::new(
@@ -118,13 +135,16 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             ..RowsColumn::default()
         }
     };
+    let score = match boards.iter().any(|board| board.task == BenchTask::Indices) {
+        true => "rms heading error; for K and T the larger relative error",
+        false => "rms heading error",
+    };
     Some(NamedRows {
         names: rivals.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
-            "Score: rms heading error; for K and T the larger relative error. Left of the line a method is better than {}. Medians over \
-             the cases; hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; bars: 95 %, for six independent \
-             records or more.",
+            "Score: {score}. Left of the line a method is better than {}. Medians over the cases; hollow: single cases if \
+             fewer than {MIN_SUMMARISED_VALUES}. Intervals need six independent records.",
             results.reference
         )),
         ..NamedRows::default()

@@ -22,7 +22,7 @@ struct BenchPage<'a> {
     results: &'a BenchDocument,
     /// Leaderboards by task.
     tasks: Vec<(BenchTask, Vec<&'a Leaderboard>)>,
-    /// Text of the leaderboards of the single score over all tasks.
+    /// Leaderboards that enter the mean rank over all predictions, as text.
     overall_boards: String,
     methods: Vec<(&'a String, &'a String)>,
     figures: PlacedFigures<&'static str>,

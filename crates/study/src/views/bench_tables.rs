@@ -119,7 +119,7 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     table
 }
 
-/// Median of a set as text; `failed` if it is not finite.
+/// Median of a set as text: `failed` if it is not finite, the mark of a missing value without a case.
 fn median(set_median: Option<(f64, usize)>) -> String {
     set_median.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
 }
@@ -218,7 +218,7 @@ pub fn answer_rows(results: &BenchDocument) -> Table {
     let head = TableHead::default();
     let head = head.texts(["task", "records", "set", "trial", "fitted", "scored", "method", "score"]);
     let head = head.texts(["K error", "T error"]).unit("%");
-    let mut table = Table::new(head.texts(["K held", "T held", "missing", "said", "named", "failure"]));
+    let mut table = Table::new(head.texts(["K held", "T held", "missing", "judgement", "named", "failure"]));
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {

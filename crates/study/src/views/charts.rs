@@ -90,18 +90,19 @@ const MIN_QUOTING_SHARE: f64 = 0.5;
 const MAX_ERROR: f64 = 100.0;
 
 /// Minimum error that is plotted, per cent: smaller errors count as exact.
-const MIN_ERROR: f64 = 1e-4;
+pub const MIN_ERROR: f64 = 1e-4;
 
 /// Note on the nominal coverage.
 const LINE_NOTE: &str = "Line: 95 %.";
 /// Note on errors beyond the axis.
 const CUT_NOTE: &str = "Arrows: rms error of more than 100 % of the true value.";
 /// Note on exact errors.
-const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
+pub const EXACT_NOTE: &str = "Errors below 0.0001 % are drawn there.";
 
-/// Methods that can be compared in some cells, and whether their errors are relative to the first-order response
-/// nearest to the ship. `None` if K and T are not the same quantities in all cells and the study is about predictions,
-/// or if intervals would be of a response that is not the truth. A trace is compared with the ship's own K and T.
+/// Indices of the methods that can be compared in some cells, and `true` if their errors are relative to the
+/// first-order response nearest to the ship. A trace estimates K and T of the ship herself, so it is left out of such a
+/// comparison. `None` for a measure of K and T if a cell is compared with the nearest response in a study of
+/// predictions, or if the coverage of intervals would refer to that response.
 pub fn comparable_methods<'a>(
     design: &Design,
     measure: ErrorMeasure,
@@ -119,7 +120,7 @@ pub fn comparable_methods<'a>(
     Some((methods, to_nearest))
 }
 
-/// Titles of the axes of root mean square errors of K and of T.
+/// Title of the axis of root mean square errors of K or T, whichever is the `symbol`.
 pub fn rms_title(symbol: &str, to_nearest: bool) -> String {
     match to_nearest {
         true => format!("rms difference of {symbol} from the nearest first-order response [%]"),
@@ -195,6 +196,8 @@ impl<'a> ComparedMethods<'a> {
         }
     }
 
+    /// Cramér–Rao bound of the standard deviation of K (panel 0) or T (panel 1), %; `None` if the cell has none, or if
+    /// the measure is not an error of K and T.
     fn bound(&self, cell: usize, panel: usize) -> Option<f64> {
         let covariance = self.design.cells[cell].bound_percent2.filter(|_| self.measure.is_of_errors())?;
         Some(covariance[panel][panel].sqrt())

@@ -1,4 +1,4 @@
-//! Turning circles, recorded and predicted: their figures of merit in a sentence, and their tracks to scale.
+//! Turning circles, recorded and predicted: their characteristics in a sentence, and their tracks to scale.
 
 use document::fit::{CircleEntry, FitDocument, PredictedCircleEntry, TrialEntry};
 use document::names;
@@ -20,7 +20,7 @@ fn all<'a>(
     document.trials.iter().zip(&curves.records).filter_map(named)
 }
 
-/// Figures of merit of a recorded circle.
+/// Sentence on a recorded circle: advance, transfer and tactical diameter in ship lengths.
 pub fn sentence(name: &str, circle: &CircleEntry) -> String {
     let CircleEntry { side, rudder_deg, advance_lengths, transfer_lengths, tactical_diameter_lengths } = circle;
     let figures = [
@@ -58,7 +58,7 @@ fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
     )
 }
 
-/// Figures of merit of every circle, the recorded ones first.
+/// Sentence on every circle, the recorded ones first.
 pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
     let recorded = all(document, curves).map(|(name, circle, _)| sentence(&name, circle));
     recorded.chain(document.predicted_circle.iter().map(predicted_sentence)).collect()
@@ -104,7 +104,7 @@ impl CircleTrack {
     }
 }
 
-/// Share of the tactical diameter at which a point of a track counts as its end: the points are separate.
+/// Share of the tactical diameter at which a point of a track is taken as its end, since the points are discrete.
 const NEARLY: f64 = 0.999;
 
 /// Circles from above, to scale, each with its dimension lines.
@@ -122,7 +122,7 @@ pub fn predicted_pen() -> Pen {
     Pen { dash: DASHED, ..Pen::new(HEADING).width(1.4) }
 }
 
-/// Tracks of all circles, to scale; `None` without positions and prediction.
+/// Tracks of all circles, to scale; `None` if no record has positions and no circle is predicted.
 pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
     let recorded = all(document, curves).filter_map(|(name, circle, record)| {
         let figures = [circle.advance_lengths, circle.transfer_lengths, circle.tactical_diameter_lengths];

@@ -24,7 +24,7 @@ fn finite(curve: &PlotCurve) -> impl Iterator<Item = (f64, f64)> {
     curve.pairs().filter(|(x, y)| x.is_finite() && y.is_finite())
 }
 
-/// Table of all columns over the union of their times, which ascend in each; empty if a column has no value.
+/// Table of all columns over the union of their times, which ascend in each. A cell without a value is empty.
 fn table(columns: Vec<NamedCurve>) -> String {
     let mut places: Vec<f64> = columns.iter().flat_map(|(_, curve)| finite(curve)).map(|(x, _)| x).collect();
     places.sort_by(f64::total_cmp);

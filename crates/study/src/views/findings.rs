@@ -34,7 +34,7 @@ pub fn range(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
     }
 }
 
-/// Finding of a figure of methods: the point of largest difference; for T if the figure has K and T.
+/// Finding of a figure: the range of its values, of T if the figure has K and T; for a zig-zag its overshoots.
 pub fn chart_finding(plot: &Plot) -> String {
     match plot {
         Plot::Panels(data) => of_curves(data),
@@ -70,7 +70,7 @@ fn of_curves(data: &Panels) -> String {
     )
 }
 
-/// Standard deviations of T in clouds of errors.
+/// Range of the standard deviations of T in clouds of errors.
 fn of_clouds(data: &Panels) -> String {
     let stack = &data.stacks[0];
     let spread = |panel: &report::figures::LayeredPanel| {
@@ -111,7 +111,7 @@ fn of_rows(data: &NamedRows) -> String {
     format!("{}: {}", name(widest), range(&column.x.title, values(widest)))
 }
 
-/// Range over the cells of a map; over the correct ones if the map outlines them.
+/// Range over the cells of a map; over the correct ones if it shows shares of trials.
 fn of_map(data: &CellMap) -> String {
     let mut values = Vec::new();
     for (head, rows) in &data.panels {

@@ -47,7 +47,7 @@ fn declared<'a>(
     columns.iter().filter(|(_, cell)| records.iter().any(|(_, entry)| cell(entry).is_some())).collect()
 }
 
-/// A draught in three significant digits: models have decimetres.
+/// Draught, m, with three significant digits: that of a model is a few decimetres.
 fn metres(draught: f64) -> String {
     significant(draught, 3)
 }

@@ -33,7 +33,8 @@ struct FitPage<'a> {
     criteria: Option<Table>,
     /// Sentence on every turning circle.
     circles: Vec<String>,
-    /// The form of MSC/Circ.1053: declared entries, tests, and remarks.
+    /// The form of MSC/Circ.1053: its parts with declared entries, and its tests; `None` if the records measure none of
+    /// these.
     form: Option<(Vec<(&'a str, Table)>, Table)>,
     /// Remarks of the form.
     form_remarks: &'a [String],
@@ -114,7 +115,8 @@ pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
     method_table::table(&document.methods, &validated.map(|record| names::record(&record.name)).collect::<Vec<_>>())
 }
 
-/// Verdict: recommended K, T and δ_r with the reason; or the reason why there is no recommendation.
+/// Verdict: recommended K, T and δ_r with the reason; or the reason why there is no recommendation. `None` if the
+/// document has no verdict.
 pub fn verdict(document: &FitDocument) -> Option<String> {
     let verdict = document.verdict.as_ref()?;
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method)?;
@@ -202,7 +204,7 @@ fn residual(document: &FitDocument, verdict: &VerdictEntry) -> String {
     sentences
 }
 
-/// Method whose estimate differs from the verdict, of output error and maximum likelihood, with the reason.
+/// Sentence on output error or maximum likelihood if its estimate contradicts the verdict, with the reason; else empty.
 fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     let other = verdict.contradicted_by.as_ref();
     let Some(other) = document.methods.iter().find(|entry| Some(&entry.method) == other) else { return String::new() };

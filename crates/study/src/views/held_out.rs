@@ -1,4 +1,4 @@
-//! Held-out records: residuals and errors of the models before and after.
+//! Held-out records: residuals and errors of the best first-order response (before) and of the traced model (after).
 
 use ::trace::replay_errors::HORIZONS_S;
 use campaign::curves::angle_curve_deg;

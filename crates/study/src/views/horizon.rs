@@ -6,7 +6,7 @@ use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
-/// Horizon named in the finding in addition to the whole record, s, if the records have it.
+/// Horizon named in the finding in addition to the whole record, s; the shortest if the records lack it.
 const SHOWN_S: f64 = 20.0;
 
 /// Heading error of one of the two models.

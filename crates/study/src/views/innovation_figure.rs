@@ -1,5 +1,5 @@
 //! Check of model and noise on a record: a normal Q–Q plot of the innovations of its headings with the 95 % band of
-//! chance, and their autocorrelation with the test of whiteness. Moments on the ship are not part of it.
+//! chance, and their autocorrelation with the test of whiteness. The moment that the base lacks has another figure.
 
 use ::trace::SIGNIFICANCE_LEVEL;
 use estimation::residuals::{GappedSeries, autocorrelation, whiteness_lags, whiteness_test};

@@ -3,26 +3,31 @@
 
 use campaign::design::Design;
 use campaign::scenario::Highlight;
-use report::figures::{
-    CellMap, LabelPlacement, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack,
-};
+use report::figures::{CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack};
 use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use campaign::statistics::{distinct, grouped};
 
+use super::charts::{EXACT_NOTE, MIN_ERROR};
 use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Remark on the simulated trials behind every value, with their number if it is the same for all.
+/// Remark on the trials behind every value, with their number or its range; of measured records, on the predictions.
 pub fn trials_remark(design: &Design) -> String {
-    let counts = distinct(design.cells.iter().map(|cell| cell.trials.end - cell.trials.start));
-    let [count] = counts[..] else { return String::from(SIMULATED) };
+    let counts: Vec<u64> = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).collect();
     let each = if design.cells.len() > 1 { " each" } else { "" };
-    format!("{}{each}.", counted(count, "simulated trial"))
+    let what = if design.is_measured() { "predicted records" } else { "simulated trials" };
+    format!("{} {what}{each}.", count_range(&counts))
+}
+
+/// Range of counts as text: "4 to 40", or the count that all have.
+pub fn count_range(counts: &[u64]) -> String {
+    let [least, most] = [counts.iter().min(), counts.iter().max()].map(|end| end.copied().unwrap_or(0));
+    if least < most { format!("{least} to {most}") } else { most.to_string() }
 }
 
 /// Remark on the trials of a figure.
@@ -55,30 +60,34 @@ pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     plot
 }
 
-/// Layers that are not highlighted, in pale colours. Several share one name, at the line that ends in their middle.
+/// Layers that are not highlighted, in pale colours. Several share one name, at the line in the middle of those
+/// that end in the figure.
 fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
     let mut layers: Vec<Layer> = quiet.into_iter().map(pale).collect();
     if names.len() < 2 {
         return layers;
     }
-    let end = |layer: &Layer| layer.curve.finite_pairs().last().map_or(f64::INFINITY, |(_, y)| y);
+    let end =
+        |layer: &Layer| layer.curve.pairs().last().filter(|(_, y)| y.is_finite()).map_or(f64::INFINITY, |(_, y)| y);
     layers.sort_by(|a, b| end(a).total_cmp(&end(b)));
-    let middle = layers.len().saturating_sub(1) / 2;
+    let ended = layers.iter().filter(|layer| end(layer).is_finite()).count();
+    let middle = ended.saturating_sub(1) / 2;
     for (number, layer) in layers.iter_mut().enumerate() {
         layer.name = (number == middle).then(|| counted(names.len() as u64, "other method"));
     }
     layers
 }
 
-/// A layer in pale colours, which keeps its name.
+/// A layer in pale colours, which keeps its name; a line has a gap at values beyond the axis.
 fn pale(mut layer: Layer) -> Layer {
     match &mut layer.kind {
         LayerKind::Line(_) | LayerKind::Marks(Marks { joined: Some(_), .. }) => {
             layer.kind = LayerKind::Line(Pen { opacity: 0.45, ..Pen::new(RECORD).width(0.6) });
+            layer.curve.y.iter_mut().filter(|y| y.is_infinite()).for_each(|y| *y = f64::NAN);
         }
         LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
-        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(..) => {}
+        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(_) => {}
     }
     layer.within(ASIDE)
 }
@@ -89,6 +98,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let Highlight { rows, over_bound, .. } = highlight;
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
+    let mut are_exact = false;
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.columns.is_some() {
@@ -97,6 +107,9 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             continue;
         }
         keep_t(stack);
+        let is_shown = |layer: &&Layer| !is_quiet(layer.name.as_ref(), about);
+        let shown = stack.panels.iter().flat_map(|panel| &panel.layers).filter(is_shown);
+        are_exact |= shown.flat_map(|layer| &layer.curve.y).any(|y| *y == MIN_ERROR);
         let names = stack.panels.iter().flat_map(|panel| &panel.layers).filter_map(|layer| layer.name.clone());
         let quiet_names = distinct(names.filter(|name| is_quiet(Some(name), about)));
         let unit = stack.rows.first().map_or_else(String::new, |row| unit_suffix(&row.y.title));
@@ -118,6 +131,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
     }
+    data.note.take_if(|note| note == EXACT_NOTE && !are_exact);
     (!notes.is_empty()).then(|| notes.join(" "))
 }
 
@@ -138,30 +152,20 @@ fn has_distinct_names(panel: &LayeredPanel) -> bool {
     distinct(named.iter().map(|layer| &layer.name)).len() == named.len() && distinct(colours).len() == named.len()
 }
 
-/// Values of marks at points of the axis, written next to them off their curve; of two equal texts only the first.
+/// Values of marks at points of the axis, written next to them; of two equal texts only the first.
 fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
     let mut written: Vec<(f64, String)> = Vec::new();
     let mut values = Vec::new();
-    let mut is_above = true;
-    for layer in layers {
-        if !matches!(layer.kind, LayerKind::Marks(_)) {
-            continue;
-        }
-        let curve: Vec<(f64, f64)> = layer.curve.finite_pairs().collect();
-        let before = written.len();
-        for (place, &(x, y)) in curve.iter().enumerate().filter(|(_, (x, _))| points.contains(x)) {
+    for layer in layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Marks(_))) {
+        for (x, y) in layer.curve.finite_pairs().filter(|(x, _)| points.contains(x)) {
             let text = (x, format!("{}{unit}", significant(y, 2)));
             if written.contains(&text) {
                 continue;
             }
-            // Above a rising curve there is room to the left, below it to the right.
-            let is_rising = curve[(place + 1).min(curve.len() - 1)].1 > curve[place.saturating_sub(1)].1;
-            let placement = LabelPlacement { is_above, is_right: is_above != is_rising };
-            let labels = LayerKind::Labels(placement, vec![text.1.clone()]);
+            let labels = LayerKind::Labels(vec![text.1.clone()]);
             values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, labels));
             written.push(text);
         }
-        is_above ^= written.len() > before;
     }
     values
 }
@@ -346,7 +350,7 @@ mod tests {
         let Plot::Panels(data) = highlighted_chart(data.into(), &highlight) else { panic!() };
         let layers = &data.stacks[0].panels[0].layers;
         let labels = layers.iter().filter_map(|layer| match &layer.kind {
-            LayerKind::Labels(.., labels) => Some((layer.curve.x.clone(), labels.clone())),
+            LayerKind::Labels(labels) => Some((layer.curve.x.clone(), labels.clone())),
             _ => None,
         });
         assert_eq!(
@@ -356,8 +360,9 @@ mod tests {
         // Those that are not highlighted are pale lines with one name.
         let pale = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Line(pen) if pen.colour == RECORD));
         let pale: Vec<_> = pale.map(|layer| (layer.name.as_deref(), layer.curve.y.clone(), layer.room)).collect();
-        let others = [(Some("2 other methods"), vec![9.0, 27.0]), (None, vec![f64::INFINITY; 2])];
-        assert_eq!(pale, others.map(|(name, y)| (name, y, Some(ASIDE))));
+        let [(name, ends, room), (None, gap, _)] = &pale[..] else { panic!("{pale:?}") };
+        assert_eq!((*name, &ends[..], *room), (Some("2 other methods"), &[9.0, 27.0][..], Some(ASIDE)));
+        assert!(gap.iter().all(|y| y.is_nan()));
         assert_eq!(data.note.as_deref(), Some("×: times the Cramér–Rao bound, methods in colour. Marks."));
         assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }

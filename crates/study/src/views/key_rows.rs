@@ -5,12 +5,12 @@ use campaign::statistics::distinct;
 use report::CurveOrigin;
 use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{counted, fixed, significant};
-use report::palette::{Look, Marker, QUIET, RECORD, RGBColor, SOLID};
+use report::palette::{Look, QUIET, RECORD, RGBColor};
 
 use super::pooled_charts::ALL_CELLS_ROW;
 
-/// Look of a method that the figure does not highlight.
-const OTHER: Look = Look { colour: QUIET, marker: Marker::Circle, dash: SOLID, hollow: false };
+/// Maximum number of rows that all have their values written.
+const MAX_NUMBERED_ROWS: usize = 10;
 
 /// Strength of the colour of marks in rows that are not highlighted.
 const TINT: f64 = 0.5;
@@ -30,7 +30,7 @@ pub fn is_of_k(title: &str) -> bool {
 
 /// Unit of the values of an axis as it follows a number: per cent or degrees, else none.
 pub fn unit_suffix(title: &str) -> String {
-    let units = [("[%]", " %"), ("[°]", "°")];
+    let units = [("[%]", " %"), ("[% of value]", " %"), ("[°]", "°")];
     units.iter().find(|(end, _)| title.ends_with(end)).map_or_else(String::new, |(_, unit)| (*unit).to_owned())
 }
 
@@ -81,7 +81,7 @@ fn is_pale(name: &String, about: &[String]) -> bool {
     name != ALL_CELLS_ROW && !about.contains(name)
 }
 
-/// Moves the highlighted rows up, below the row of all.
+/// Moves the highlighted rows up, below the row of all cells.
 fn sort_rows(data: &mut NamedRows, about: &[String]) {
     let mut order: Vec<usize> = (0..data.names.len()).collect();
     order.sort_by_key(|&row| is_pale(&data.names[row], about));
@@ -93,33 +93,44 @@ fn sort_rows(data: &mut NamedRows, about: &[String]) {
 
 /// Marks that are not highlighted: those of a single method in grey, those of several as a range.
 fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
-    let values =
-        || quiet.iter().filter_map(|item| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None });
-    let ends = [values().reduce(f64::min)?, values().reduce(f64::max)?];
+    let marks: Vec<(Look, f64)> = quiet
+        .iter()
+        .filter_map(|item| if let RowKind::Mark(look, value, _) = item.kind { Some((look, value)) } else { None })
+        .collect();
+    let values = || marks.iter().map(|(_, value)| *value);
+    let range = [values().reduce(f64::min)?, values().reduce(f64::max)?];
+    let range = |name: String| RowItem::new(format!("{name}, range"), RowKind::Range(RECORD, range));
     let item = match names {
-        [name] => RowItem::new(name, RowKind::Mark(OTHER, ends[0], None)),
-        _ => RowItem::new(format!("{}, range", counted(names.len() as u64, "other")), RowKind::Range(RECORD, ends)),
+        [name] => RowItem::new(name, RowKind::Mark(Look { colour: QUIET, ..marks[0].0 }, marks[0].1, None)),
+        [first, second] => range(format!("{first} and {second}")),
+        _ => range(counted(names.len() as u64, "other")),
     };
     Some(RowItem { place: RowPlace::Below, ..item.clipped_if_far() })
 }
 
-/// Pales the rows that are not highlighted, and writes the values of all highlighted methods.
+/// Pales the rows that are not highlighted, and writes the values of all highlighted methods; of many rows, only in
+/// those that are highlighted.
 fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_bound: bool) {
     let unit = unit_suffix(&column.x.title);
+    let is_long = names.len() > MAX_NUMBERED_ROWS;
     for (row, name) in column.rows.iter_mut().zip(names) {
         let is_pale = is_pale(name, about);
         let limit = row.iter().find_map(|item| if let RowKind::Limit(limit) = item.kind { Some(limit) } else { None });
         let limit = limit.filter(|_| over_bound);
         for item in row {
             let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
-            if *look != OTHER {
-                let number = significant(*value / limit.unwrap_or(1.0), 2);
-                item.number = Some(format!("{number}{}", if limit.is_some() { "×" } else { unit.as_str() }));
+            let is_quiet = look.colour == QUIET;
+            if !is_quiet && !(is_long && is_pale) {
+                item.number = Some(match limit {
+                    Some(limit) => format!("{}×", significant(*value / limit, 2)),
+                    None if unit.is_empty() => fixed(*value, 2),
+                    None => format!("{}{unit}", significant(*value, 2)),
+                });
             }
             if is_pale {
                 // The key shows the looks of the highlighted rows.
                 item.name = None;
-                look.colour = if *look == OTHER { look.colour } else { tint(look.colour) };
+                look.colour = if is_quiet { look.colour } else { tint(look.colour) };
             }
         }
     }

@@ -12,10 +12,10 @@ use trace::missing_moment::MomentChannel;
 
 use crate::documents::missing_moment::{ChannelCurve, MissingMomentCurves};
 
-/// Maximum number of panels of a figure.
+/// Maximum number of panels over channels in a figure.
 const MAX_PANELS: usize = 4;
 
-/// Maximum plotted moment over time, and over a channel, in usual sizes: a jump would set the axis.
+/// Maximum plotted moment over time, and over a channel, in medians of its size: otherwise a jump would set the axis.
 const REACHES: [f64; 2] = [8.0, 2.5];
 
 /// Title of the axis of a channel: name, symbol and unit.
@@ -85,7 +85,7 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
         true => String::new(),
         false => format!(" Not drawn, because the band includes zero: {}.", undrawn.join(", ")),
     };
-    let note = Some(format!("Moments beyond {} times the usual size are cut.{undrawn}", REACHES[1]));
+    let note = Some(format!("Over a channel, moments beyond {} times the usual size are cut.{undrawn}", REACHES[1]));
     Panels { stacks, note, ..Panels::default() }
 }
 

@@ -8,6 +8,7 @@ use report::Table;
 use report::figures::{CellMap, MapCell, Outline, Shades};
 use report::number;
 
+use super::key_figure::count_range;
 use super::tables::head_of_cells;
 use super::tracing_table::has_several_traces;
 
@@ -63,15 +64,18 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
     let cells = ships.iter().map(|(_, lines)| Judgement::ALL.map(|judgement| cell(lines, judgement)).to_vec());
     let cells: Vec<Vec<MapCell>> = cells.collect();
     let finding = format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"));
+    let counts: Vec<u64> = ships.iter().map(|(_, lines)| trials(lines)).collect();
     let map = CellMap {
         titles: [String::from("answer of the trace"), String::from("ship")],
         columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
         rows: ships.into_iter().map(|(name, _)| name).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells)],
-        note: Some(String::from(
-            "Shares of the trials of a row in per cent. Known: on the list of effects, in another formula. Unknown: on \
-             no list. Located: its dependence and its times are found. Disturbed: a random moment. Clean: noise alone.",
+        note: Some(format!(
+            "Shares in per cent; {} trials of each kind of ship. Known: on the list of effects, in another formula. \
+             Unknown: on no list. Located: its dependence and its times are found. Disturbed: a random moment. Clean: \
+             noise alone.",
+            count_range(&counts)
         )),
     };
     (!judged.is_empty()).then_some((finding, map))

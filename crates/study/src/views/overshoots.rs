@@ -13,13 +13,14 @@ use trial::{ZigZag, imo};
 
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
-/// First or second overshoot of a record, the two with an IMO limit, degrees.
+/// First or second overshoot of a record, measured and replayed, degrees; only these two have an IMO limit.
 pub struct ReplayedOvershoot<'a> {
     record: &'a RecordEntry,
     word: &'static str,
     measured: f64,
-    /// Overshoots by the models before and after; `None` if a replay has none.
+    /// Overshoots in the replays by the base and by the traced model; `None` if a replay has none.
     replayed: [Option<f64>; 2],
+    /// IMO limit; `None` if no criterion applies to the record.
     limit: Option<f64>,
     /// Maximum rudder of the record, rad.
     rudder: f64,
@@ -92,7 +93,8 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let column = RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
     let name = |overshoot: &ReplayedOvershoot| {
         let used = if overshoot.record.held_out { "" } else { " (fitted)" };
-        format!("{}, {}{used}", names::record(&overshoot.record.name), overshoot.word)
+        let place = if overshoot.word == "first" { "1st" } else { "2nd" };
+        format!("{}: {place}{used}", names::record(&overshoot.record.name))
     };
     let seen = document.ship.validity_range.rudder_rad;
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);

@@ -61,10 +61,10 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
     maps.into_iter().filter_map(map_of).filter(is_there).collect()
 }
 
-/// Maximum length of whiskers, in median spreads; longer ones are cut.
+/// Maximum distance of the end of a whisker from zero, in medians of these distances; longer whiskers are cut.
 const MAX_SPREADS: f64 = 4.0;
 
-/// Distributions of the errors in the cells whose detail was requested; none for fewer than ten trials.
+/// Distributions of the errors in the cells whose detail was requested, by cell index; none for fewer than ten trials.
 pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
@@ -100,7 +100,8 @@ const REACH: f64 = 2.2;
 /// Maximum size of an ellipse with a panel, in medians: a larger one would leave its panel empty.
 const FAR: f64 = 3.0;
 
-/// Clouds of errors in the cells whose detail was requested, and whether there is a bound.
+/// Clouds of errors in the cells whose detail was requested: index of the cell, `true` if it has a bound, and the
+/// clouds.
 pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
         let covariance_bound = design.cells[detail.cell].bound_percent2;
@@ -152,8 +153,8 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
 }
 
 /// K and T estimated by the reference method at the named points of the last axis, relative to those at the first
-/// point, one series for every point of the other axes; `None` unless some ships are not first order and have no K and
-/// T of their own for all trials.
+/// point, one series for every point of the other axes; with the label of the method. `None` if all ships are of first
+/// order, if the study has traces, or if the last axis has numbers or a single point.
 pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
@@ -186,7 +187,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
         names_title: design.axes[last].clone(),
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        note: Some(String::from("Marks: means.")),
+        note: Some(format!("Marks: means by {}.", design.methods[summary.reference].label)),
         ..NamedRows::default()
     };
     Some((rows, design.methods[summary.reference].label.clone()))
@@ -209,7 +210,8 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     })
 }
 
-/// Centre and ends of some values with this percentage cut at either end: the mean without a cut, else the median.
+/// Centre and ends of some values after `outer` per cent are cut at either end: the mean without a cut, else the
+/// median; `None` without values.
 fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;

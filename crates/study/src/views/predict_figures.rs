@@ -1,4 +1,4 @@
-//! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
+//! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and characteristics against the
 //! limits of IMO.
 
 use std::f64::consts::TAU;
@@ -170,8 +170,8 @@ fn bands(heading: &BandedCurve, recorded: Option<PlotCurve>, rudder_deg: PlotCur
     let pen = Pen::new(HEADING).width(1.2);
     layers.push(Layer::line("most probable ship", curve(degrees(&heading.most_probable)), pen));
     let rows = vec![(PanelRow::new(AxisSpec::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
-    let cut = Some(String::from("The band of 90 % is cut at the frame."));
-    Panels { cut, ..Panels::over_time(rows) }
+    let clipping_note = Some(String::from("The band of 90 % is cut at the frame."));
+    Panels { clipping_note, ..Panels::over_time(rows) }
 }
 
 fn replay(replayed: &RecordReplay) -> Panels {
@@ -203,8 +203,8 @@ fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
         circle("measured", &tracks.measured, figures(|figure| figure.measured), Pen::new(INK).width(1.8)),
         circle("median of the drawn ships", &tracks.median, figures(|figure| figure.interval.median), predicted_pen()),
     ];
-    let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::new(circle::plan_view(&circles, tracks.drawn.iter().map(drawn).collect())) }
+    let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
+    Panels { clipping_note, ..Panels::new(circle::plan_view(&circles, tracks.drawn.iter().map(drawn).collect())) }
 }
 
 fn track(prediction: &Prediction) -> Panels {
@@ -228,8 +228,8 @@ fn track(prediction: &Prediction) -> Panels {
     ]);
     let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
     let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
-    let cut = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { cut, ..Panels::new(Stack { has_equal_scales: true, ..stack }) }
+    let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
+    Panels { clipping_note, ..Panels::new(Stack { has_equal_scales: true, ..stack }) }
 }
 
 /// Prediction intervals of characteristics, with measured values and limits.

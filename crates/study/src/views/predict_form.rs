@@ -13,7 +13,7 @@ use super::bench_figures::capital;
 /// Text of an entry without a value.
 const EMPTY: &str = "–";
 
-/// Value as it is filled in, without its unit. Numbers of one side are results, others are declared.
+/// Value as it is filled in, without its unit. A number with a side is a result of a test, any other is declared.
 fn filled(entry: &ImoFormEntry) -> String {
     if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
         return fixed(median, PredictionInterval { median, ci50: ci90, ci90 }.decimals().min(MAX_DECIMALS));

@@ -19,7 +19,7 @@ const MIN_CHANGE: f64 = 0.1;
 const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION, BEFORE, INK, RECORD];
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up];
 
-/// Effect, or group that the records cannot separate, with its probability for every factor.
+/// Effect, or group that the records cannot separate, with its probability for every factor of the prior odds.
 struct OddsLine<'a> {
     name: String,
     is_named: bool,

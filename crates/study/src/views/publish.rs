@@ -21,6 +21,8 @@ use crate::options::{CommonOptions, FigureChoice, Format};
 use crate::screen;
 
 /// Writes the tables, the figures, `report.md` and `report.html` to a folder, and prints the tables.
+///
+/// Fails if a row cannot be read or a file cannot be written.
 pub fn write_results(
     stored: &StoredStudy,
     folder: &ResultFolder,
@@ -70,7 +72,9 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
     })
 }
 
-/// Writes the tables, the figures, `report.md` and `report.html` to a folder; returns the data of the page.
+/// Writes the tables, the figures, `report.md` and `report.html` to a folder; returns the summary of the rows.
+///
+/// Fails if a row cannot be read or a file cannot be written.
 pub fn write_files(
     stored: &StoredStudy,
     folder: &ResultFolder,

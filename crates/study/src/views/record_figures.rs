@@ -18,9 +18,9 @@ pub struct ModelOverTime {
     pub heading: PlotCurve,
     /// Recorded minus replayed heading.
     pub residual: PlotCurve,
-    /// Root mean square of the residual, degrees.
+    /// Root mean square of the residual, degrees; `None` if it is not shown.
     pub rms_deg: Option<f64>,
-    /// Lower and upper ends of the band about the heading, and about zero residual.
+    /// Lower and upper ends of the band about the heading, and about zero residual; `None` without a band.
     pub band: Option<[[PlotCurve; 2]; 2]>,
 }
 
@@ -81,8 +81,8 @@ pub fn stability(curves: &[SteadyCurve]) -> String {
     }
 }
 
-/// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test. The branch that is not
-/// stable on a straight course is dashed, other possible ships are pale, and the range of the records is shaded.
+/// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test. The unstable branch is
+/// dashed, other possible ships are pale, and the range of the records is shaded.
 pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let curve = |ship: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let place = |row: usize| match keep(row) {
@@ -113,9 +113,9 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
         }
     }
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
-    let cut = Some(String::from("Some drawn ships are cut at the frame."));
+    let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
     let stack = Stack::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
-    Panels { note, cut, ..Panels::new(Stack { zero: true, ..stack }) }
+    Panels { note, clipping_note, ..Panels::new(Stack { zero: true, ..stack }) }
 }
 
 #[cfg(test)]

@@ -165,7 +165,9 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let plot = NamedRows {
         names,
         columns: vec![column],
-        note: Some(String::from("Pale: single records. Dark: medians of five or more.")),
+        note: Some(String::from(
+            "Pale: single records. Dark: medians of five or more, with intervals for six fits or more.",
+        )),
         ..NamedRows::default()
     };
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))
@@ -249,7 +251,7 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     Page::new(page.render(), page.figures)
 }
 
-/// Writes the tables, the figure and the page to a folder; returns the data of the page.
+/// Writes the tables, the figure and the page to a folder; returns the summary of the rows.
 ///
 /// Fails if rows are missing, or if a file cannot be written.
 pub fn write_files(

@@ -33,7 +33,7 @@ struct Section {
     question: String,
     /// Finding of the study.
     finding: String,
-    /// File of the key figure.
+    /// File of the key figure; `None` if the scenario names none.
     figure: Option<String>,
 }
 

@@ -31,7 +31,7 @@ use crate::screen;
 pub enum FigurePlace {
     /// Top of the page, for the key figure of the study.
     Key,
-    /// Section of the first trial of a cell.
+    /// Section of the first trial of a cell, by the index of its showcase.
     Showcase(usize),
     /// Section of the effects named by traces.
     Traces,
@@ -80,10 +80,12 @@ pub fn chosen_figures(
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             let mut key = PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot);
-            if !design.is_measured() {
-                let is_counted = matches!(place, FigurePlace::Chart | FigurePlace::AllTrials);
-                let remark = if is_counted { key_figure::trials_remark(design) } else { key_figure::SIMULATED.into() };
-                key_figure::add_trials_remark(&mut key, &remark);
+            match place {
+                FigurePlace::Chart | FigurePlace::AllTrials => {
+                    key_figure::add_trials_remark(&mut key, &key_figure::trials_remark(design));
+                }
+                _ if design.is_measured() => {}
+                _ => key_figure::add_trials_remark(&mut key, key_figure::SIMULATED),
             }
             (FigurePlace::Key, key)
         })

@@ -57,6 +57,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
 /// Statistic of [`IndexErrors`]: its name, its unit, and its accessor.
 type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
+/// Statistics of K, T and K/T in `summary.csv`, in the order of its columns.
 const ERRORS: [ErrorFigure; 15] = [
     ("mean error", "%", |errors| errors.mean),
     ("median error", "%", |errors| errors.median),
@@ -97,7 +98,7 @@ fn with_ends(head: TableHead, name: &str, unit: &str) -> TableHead {
     if unit.is_empty() { head } else { head.unit(unit) }
 }
 
-/// Statistic and the ends of its interval with all digits.
+/// Statistic and the ends of its interval with six significant digits.
 fn all_digits(figure: Option<Statistic>) -> [String; 3] {
     Statistic::value_and_ends(figure).map(|value| number::significant(value.unwrap_or(f64::NAN), 6))
 }

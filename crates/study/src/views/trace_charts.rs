@@ -19,6 +19,8 @@ use campaign::design::Design;
 use campaign::statistics::{Statistic, distinct, grouped, wilson_share};
 use campaign::summary::{CALIBRATION_BIN_EDGES, CalibrationBin, TraceSummary};
 
+use super::key_figure::count_range;
+
 /// Name of the row of ships without a missing effect, and of the column of trials in which no effect was named.
 const NOTHING: &str = "nothing";
 
@@ -98,17 +100,21 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     if rules.len() < 2 {
         return None;
     }
+    let sum = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
+        lines.iter().filter(|line| !lacks || !line.missing.is_empty()).map(|line| count(line)).sum::<u64>()
+    };
+    let trials_of = |lines: &[&TraceSummary], lacks: bool| sum(lines, |line| line.trials, lacks);
     let share_of = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
-        let lines = || lines.iter().filter(|line| !lacks || !line.missing.is_empty());
-        wilson_share(lines().map(|line| count(line)).sum(), lines().map(|line| line.trials).sum())
-            .map(|all| all.times(100.0))
+        wilson_share(sum(lines, count, lacks), trials_of(lines, lacks)).map(|all| all.times(100.0))
     };
     let of_rule = |(method, lines): &(usize, Vec<&TraceSummary>)| {
         let (wrong, exact) =
             (share_of(lines, |line| line.falsely_named, false)?, share_of(lines, |line| line.exactly_named, true)?);
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
-    Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?))
+    let data = trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?);
+    let [all, lacking] = [false, true].map(|lacks| trials_of(&rules[0].1, lacks));
+    Some(NamedRows { note: Some(format!("{all} trials of each rule; in {lacking} the ship lacks an effect.")), ..data })
 }
 
 /// Share of false names of several traces on ships without a missing effect, with the bound for this number of trials;
@@ -137,7 +143,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     let mut note = String::from("Nothing is missing in any trial.");
     if kinds.len() > 1 && variants.iter().all(|(_, rows)| is_same(rows)) {
         rules = variants.iter().map(|(variant, rows)| (*variant, rows[0].2)).collect();
-        note += &format!(" The rules {} give the same.", kinds.join(", "));
+        note += &format!(" All {} rules give the same.", kinds.len());
     }
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
         let share = wilson_share(*wrong, *trials)?.times(100.0);
@@ -192,12 +198,13 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
 const MIN_RATIO: f64 = 1.0;
 
 /// Number of points of a theoretical curve.
-const POINTS: usize = 80;
+const POINTS: usize = 240;
 
-/// Support at which an effect is named: it turns even odds among a dozen candidates into nineteen to one.
-const NAMING_SUPPORT: f64 = 10.0;
+/// Excess of 2 ln Λ over its penalty at which an effect is named: 2 ln (19 · 9), which turns the prior odds of 1 to 9
+/// into 19 to 1, a probability of 0.95.
+const NAMING_SUPPORT: f64 = 10.283;
 
-/// Rows of a typical record; every parameter has a penalty of their logarithm in 2 ln Λ.
+/// Number of rows of a typical record; its logarithm is the penalty of every parameter in 2 ln Λ, as in BIC.
 const TYPICAL_ROWS: f64 = 300.0;
 
 /// Numbers of parameters whose power is plotted.
@@ -268,6 +275,12 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         let ranges = grouped::<_, &TraceSummary>(lines, range);
         (name, ranges.iter().filter_map(|(_, lines)| point(lines)).collect())
     };
+    let counts = grouped(shown.iter().copied(), |line| (name(line), range(line))).into_iter();
+    let counts: Vec<u64> = counts.map(|(_, lines)| lines.iter().map(|line| line.trials).sum()).collect();
+    let note = format!(
+        "{} trials at each mark. Λ: likelihood ratio of the truth to a first-order response.",
+        count_range(&counts)
+    );
     let series = grouped(shown.iter().copied(), name).into_iter().map(points).collect();
     let largest = shown.iter().map(|line| expected(line)).reduce(f64::max)?;
     let theory = PARAMETERS.map(|freedom| {
@@ -279,7 +292,8 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
     let x = AxisSpec::new("size of the effect: expected 2 ln Λ", TickRule::Logarithmic);
-    Some(shares(x, "trials in which it is named [%]", series, theory.into()))
+    let data = shares(x, "trials in which it is named [%]", series, theory.into());
+    Some(Panels { note: Some(note), ..data })
 }
 
 /// Number of trials with one missing effect in which it was named, and of all such trials.
@@ -290,7 +304,7 @@ pub fn single_effect_counts(lines: &[TraceSummary]) -> [u64; 2] {
 
 /// Finding: how many of the effects with the highest probabilities were present.
 pub fn kept_effects_finding(lines: &[TraceSummary]) -> String {
-    let ranges = calibration(lines);
+    let ranges = calibration_bins(lines);
     let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {
         return String::from("No effect has a probability");
     };
@@ -311,7 +325,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
         let share = wilson_share(range.present, range.effects)?.times(100.0);
         Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
     };
-    let ranges = calibration(lines);
+    let ranges = calibration_bins(lines);
     let points = |few: bool| ranges.iter().filter(|bin| (bin.effects < MANY) == few).filter_map(point).collect();
     let series =
         [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
@@ -323,7 +337,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
 }
 
 /// Bins of effects by their probability, over all cells.
-pub fn calibration(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
+pub fn calibration_bins(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION_BIN_EDGES.len() - 1];
     for line in lines {
         all.iter_mut().zip(line.calibration).for_each(|(all, bin)| *all += bin);

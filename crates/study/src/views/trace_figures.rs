@@ -1,5 +1,5 @@
-//! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
-//! held-out records, the evidence, the innovations, the moment that the base lacks, and plots of the residuals.
+//! Figures of a trace, from its document and its curves: every fitted record with the base (before) and the average of
+//! the structures (after), the evidence, the innovations, the moment that the base lacks, and plots of the residuals.
 
 use campaign::curves::{angle_curve_deg, degrees};
 use document::names;

@@ -40,7 +40,8 @@ fn finding(document: &TraceDocument) -> String {
     )
 }
 
-/// Number of the held-out record whose ratio is nearest to the pooled one, which is in the title.
+/// Index of the held-out record whose error ratio is nearest to the pooled one of the title; `None` without such a
+/// record.
 fn nearest(held: &[BeforeAfter]) -> Option<usize> {
     let off = |number: &usize| (ratio(held[*number..=*number].iter()) / ratio(held.iter())).ln().abs();
     (0..held.len()).min_by(|a, b| off(a).total_cmp(&off(b)))

@@ -76,8 +76,8 @@ fn formulas(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String
 /// Minimum departure of a hull coefficient that is reported, in standard deviations.
 const MIN_DEPARTURE: f64 = 2.0;
 
-/// Coefficient with the maximum departure from its prior, in the hull made from the ship's dimensions, else in the
-/// first.
+/// Sentence on the fitted hulls, and on the coefficient with the maximum departure from its prior in the hull of the
+/// form mmg, else in the first; empty without hulls.
 fn odd(document: &TraceDocument) -> String {
     let hulls = &document.ship.hulls;
     let Some(hull) = hulls.iter().find(|hull| hull.form == "mmg").or(hulls.first()) else { return String::new() };

@@ -107,7 +107,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     table
 }
 
-/// Heading error of replays restarted after every `window_s` seconds, deg.
+/// Heading error of replays restarted after every `window_s` seconds, deg; `None` if the record is too short.
 pub fn restarted_heading_error(errors: &ErrorsEntry, window_s: f64) -> Option<f64> {
     *errors.horizon_rmse_deg.get(&format!("{window_s:.0}"))?
 }
@@ -123,7 +123,7 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 /// Minimum departure of a listed hull coefficient, in standard deviations.
 const MIN_DEPARTURE: f64 = 1.0;
 
-/// Hull coefficients that depart from their expected values, in descending order.
+/// Hull coefficients at least one standard deviation off their expected values, for each hull the farthest first.
 pub fn hulls(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));

@@ -7,14 +7,14 @@ use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
 use super::tables::head_of_cells;
-use super::trace_charts::calibration;
+use super::trace_charts::calibration_bins;
 use campaign::design::Design;
 use campaign::scenario::TRACE;
 use campaign::statistics::{Statistic, wilson_share};
 use campaign::summary::{CALIBRATION_BIN_EDGES, MIN_CLEAR_MARGIN, Performance, Summary, TraceSummary};
 use trace::Verdict;
 
-/// Table of every cell with its shares, for people and, with all digits, for `tracing.csv`.
+/// Table of every cell with its shares, for people and, with intervals and more digits, for `tracing.csv`.
 ///
 /// Heading errors are medians over the trials, of the base (the reference method) and of the traced model, on the trial
 /// itself and on the validation manoeuvre. Coverages of the bands are means over the trials: of the headings of the
@@ -73,7 +73,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
 pub fn reliability(lines: &[TraceSummary]) -> Table {
     let head = TableHead::default().counts(["probability from", "to"]).unit("%").counts(["effects"]);
     let mut table = Table::new(head.numbers(["mean probability", "present", "low", "high"]).unit("%"));
-    for (range, ends) in calibration(lines).iter().zip(CALIBRATION_BIN_EDGES.windows(2)) {
+    for (range, ends) in calibration_bins(lines).iter().zip(CALIBRATION_BIN_EDGES.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = wilson_share(range.present, range.effects);
         let mut cells: Vec<String> = ends.iter().map(|end| number::fixed(100.0 * end, 0)).collect();

@@ -87,7 +87,7 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
     Ok(())
 }
 
-/// Check of models against records; warns if the ships sail at different Froude numbers.
+/// Checks that models can be priors of records; returns a warning for each whose ship sails at another Froude number.
 ///
 /// Fails if a record counts twice, or if models are given and no hull can be fitted to the records.
 pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
@@ -118,13 +118,13 @@ fn other_speeds(models: &[EarlierModel], ship: &HullParticulars) -> Vec<Warning>
     models.iter().filter_map(of_model).collect()
 }
 
-/// Ship whose hulls were fitted without some models.
+/// Identified ship before her hulls are updated with models of earlier trials.
 pub struct LaterShip<'a> {
     /// Name of her model in messages.
     pub file: &'a str,
     /// The identified ship.
     pub ship: &'a IdentifiedShip,
-    /// Records used in her model.
+    /// Records used in her model: their files by SHA-256.
     pub records: &'a BTreeMap<String, String>,
 }
 
@@ -140,7 +140,8 @@ pub struct ShipAfterTrials {
 
 /// Ship whose hulls are updated with the models.
 ///
-/// Fails if she has no hull, if a record would count twice, or if the models have no hull of the same form.
+/// Fails if she has no hull, if a record would count twice, if the models have no hull of the same form, or if no ship
+/// can be drawn from an updated hull.
 pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
@@ -166,7 +167,8 @@ pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfte
     Ok(ShipAfterTrials { ship, earlier, warnings })
 }
 
-/// Document entry of the models used for a ship after their check, the closest hull first.
+/// Document entry of the models used for a ship, and of their checks, which begin with the closest hull; `takes_part`
+/// is `true` for a form of hull that is used.
 fn earlier_trials(
     models: &[EarlierModel],
     ship: &HullParticulars,

@@ -12,14 +12,14 @@ use trial::{Quantity, Trial};
 use crate::records::file_and_hash;
 use crate::scales::RescaledRecords;
 
-/// Methods in order of preference if one represents all. The first has errors that include the uncertainty of the
-/// noise.
+/// Methods in order of preference if one represents all. The standard deviations of the first include the uncertainty
+/// of the noise.
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// A method with its label.
 pub type LabelledMethod = (String, Box<dyn Identifier>);
 
-/// Estimates of every method at each scale alone and its joint estimate; `None` if all records have one scale.
+/// Estimates of every method at each scale alone and its joint estimate; `None` if all fitted records have one scale.
 pub fn compared(
     methods: &[LabelledMethod],
     answers: &[(MethodEntry, Option<Estimate>)],
@@ -41,7 +41,7 @@ pub fn compared(
     (groups.len() > 1).then(|| ScalesEntry::new(&groups, &files, first, all()))
 }
 
-/// Terms K', T', the regular 1/T' and K'/T', and δ_r.
+/// Comparison of K', T', δ_r, and of 1/T' and K'/T', which are finite for 1/T = 0 as well.
 fn terms(joint: &Estimate, by_scale: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
     type Of = fn(&Estimate) -> Quantity;
     let all: [(&str, &str, [i32; 2], Of); 5] = [
@@ -74,7 +74,7 @@ pub fn compared_term([symbol, unit]: [&str; 2], joint: Quantity, at_scales: Vec<
     }
 }
 
-/// 1/T or K/T with its standard deviation.
+/// 1/T (`place` 0) or K/T (`place` 1) with standard deviation and 95 % interval, if the estimate has a covariance.
 fn parameter(estimate: &Estimate, place: usize) -> Quantity {
     let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else {

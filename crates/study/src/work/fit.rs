@@ -43,7 +43,8 @@ pub struct FitResult {
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
     /// Document of `fit.json`.
     pub document: FitDocument,
-    /// Median track of the turning circle predicted from the recommended estimate, north and east in ship lengths.
+    /// Median track of the turning circle predicted from the recommended estimate, north and east in ship lengths;
+    /// `None` if the circle was not predicted.
     circle_track: Option<Vec<[f64; 2]>>,
 }
 
@@ -107,8 +108,8 @@ impl FitResult {
 /// Identification of the records together by every method, with replays on `validation`; `priors` apply to the hull.
 /// The document has the `warnings` of the records and those of the fit.
 ///
-/// Fails if the records cannot be brought to one scale, if no method identifies them, or if there are priors and no
-/// hull can be fitted: that is wrong input, not a result.
+/// Fails, as for wrong input, if the records cannot be brought to one scale, if no method identifies them, or if there
+/// are priors and no hull can be fitted.
 pub fn fit(
     [records, validation]: [&[Trial]; 2],
     methods: &[LabelledMethod],
@@ -246,8 +247,8 @@ fn late_begin(trial: &Trial, zigzag: &ZigZag) -> Option<Warning> {
     zigzag.begins_at_reversal.then(|| Warning::new(WarningCode::LateBegin, warning_source_of(trial), text))
 }
 
-/// Methods of the project by name with their default settings, the best first; without names the usual ones. Methods
-/// that use random numbers get this seed.
+/// Methods with these ids, or all for `all`, with their default settings and the best first; without names those of
+/// [`registry::DEFAULT_METHODS`]. A method that uses random numbers gets the `seed`, if there is one.
 ///
 /// Fails if no method has such a name.
 pub fn labelled_methods(names: &[String], seed: Option<u64>) -> Result<Vec<LabelledMethod>, Failure> {
@@ -271,7 +272,8 @@ pub fn labelled_methods(names: &[String], seed: Option<u64>) -> Result<Vec<Label
     Ok(chosen.collect())
 }
 
-/// Methods with an estimate and an interval, in order of preference: that of the verdict, then [`PREFERRED_METHODS`].
+/// Methods that can represent all, in order of preference: that of the verdict, then two with an interval, of which
+/// [`PREFERRED_METHODS`] come first.
 fn preferred<'a>(
     methods: &'a [LabelledMethod],
     entries: &[MethodEntry],

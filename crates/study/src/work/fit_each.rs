@@ -17,11 +17,11 @@ pub struct LogFit {
     pub file: PathBuf,
     /// `true` if the log was read as a record.
     pub is_read: bool,
-    /// Recommended estimate.
+    /// Recommended estimate; `None` if there is an error.
     pub verdict: Option<VerdictEntry>,
     /// Warnings of the record and of that estimate, the worst first.
     pub warnings: Vec<Warning>,
-    /// Reason why there is no estimate.
+    /// Reason why there is no estimate; `None` if there is one.
     pub error: Option<Failure>,
 }
 

@@ -115,6 +115,8 @@ impl DescribedLoadingCondition {
     /// Particulars of the ship at this loading, from those `at_trials`. Values that the file does not give are kept,
     /// except the mass; revolutions are proportional to the speed. Unknown particulars of rudder and propeller are
     /// assumed once for both loadings.
+    ///
+    /// Fails if this is not another loading of the same ship, or if a particular is out of range.
     fn particulars(&self, shown: &str, at_trials: &HullParticulars) -> Result<HullParticulars, Failure> {
         let mut to = completed(at_trials).map_err(|error| Failure::in_file(shown, error))?;
         to.displacement = None;

@@ -5,7 +5,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamKey};
 use trial::Trial;
 
-/// Candidate zig-zags: rudder and heading, deg, first execute to starboard.
+/// Candidate zig-zags: rudder angle and heading angle, deg. Each is planned with the first execute to either side.
 const ZIGZAGS: [[f64; 2]; 6] = [[5.0, 5.0], [10.0, 10.0], [10.0, 20.0], [20.0, 10.0], [20.0, 20.0], [30.0, 30.0]];
 
 /// Number of executes of a planned zig-zag.
@@ -17,7 +17,8 @@ const GEAR_RATES_DEG_S: [f64; 2] = [1.0, 20.0];
 /// Maximum duration of a planned trial, in durations of the longest record.
 const MAX_DURATIONS: f64 = 3.0;
 
-/// All manoeuvres that the fitted ship completes, with the sampling and the rudder rate of the records.
+/// Manoeuvres that the fitted ship completes, each with its name and its simulated record. Sampling and rudder rate are
+/// those of the first record.
 pub fn planned_trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
@@ -42,8 +43,8 @@ pub fn planned_trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Tr
         .collect()
 }
 
-/// Fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` if it does not complete
-/// the manoeuvre.
+/// Simulated record of the fitted ship in one manoeuvre, with the sampling and the rudder rate of the first record;
+/// `None` if it does not complete the manoeuvre.
 fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let mut simulation = Simulation::new(SimulatedShip::from_response(analysis.ship()), manoeuvre);

@@ -69,11 +69,11 @@ impl StoredModel {
         Self::from_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
-    /// Identified ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the one with
-    /// the highest coverage of its intervals. `calm` removes the weather of the records. `shown` is the name in
-    /// messages.
+    /// Identified ship in the text of a `fit.json` or `trace.json`; of several methods that of `asked`, else that of
+    /// the verdict, else the first in order of preference. `calm` removes the weather of the records. `shown` is the
+    /// name in messages.
     ///
-    /// Fails if the text is no such document, or if it holds no estimate with a covariance.
+    /// Fails if the text is no such document, or if it holds no estimate of that method with a covariance.
     pub fn from_document(
         shown: &str,
         text: &str,
@@ -143,11 +143,12 @@ pub struct PredictInput<'a> {
     pub records: Vec<Trial>,
     /// Current removed from the tracks of the turns of the records; `None` for the current estimated from each track.
     pub current: Option<Current>,
-    /// Conditions declared by a sidecar, without records.
+    /// Conditions declared by a sidecar; `None` without one, or if there are records.
     pub declared: Declared<'a>,
 }
 
-/// Requested manoeuvres; those of the IMO criteria if none is requested; those of the form in addition.
+/// Requested manoeuvres, or those of the IMO criteria if neither a manoeuvre, a replay nor the form is requested; those
+/// of the form, if requested, in addition.
 fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
         ([], true) => standard::imo_manoeuvres(),
@@ -209,7 +210,7 @@ impl SteeredShips<'_> {
 /// Predictions of the manoeuvres and replays of the records.
 ///
 /// Fails if a model cannot be brought to the requested scale or loading, if a record does not determine the initial
-/// state of the ship, or if hardly any drawn ship completes any manoeuvre.
+/// state of the ship, or if there is neither a record nor a manoeuvre that half of the drawn ships complete.
 pub fn predict(
     request: &PredictRequest,
     input: PredictInput,
@@ -277,7 +278,7 @@ fn after_earlier(
     Ok(updated.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
 }
 
-/// Warning that a record is in one of the models and gives no validation.
+/// Warning if a record is in one of the models and so gives no validation.
 fn validates_nothing(models: &[StoredModel], record: &Trial) -> Option<Warning> {
     let (_, sha256) = file_and_hash(record);
     let model = models.iter().find(|model| model.records.contains_key(sha256))?;
@@ -303,7 +304,8 @@ fn fill_form(
     (document.form, document.form_remarks) = (Some(filled.entries), Some(filled.remarks));
 }
 
-/// Models at another loading, models in the trial condition with the same hulls, and the document entry of the loading.
+/// Models at another loading, the `ballast` models with only the hull that can be converted, and the document entry of
+/// the loading.
 fn at_loading(
     path: &Path,
     models: &[StoredModel],
@@ -381,7 +383,9 @@ impl ReplayedModels<'_> {
     }
 }
 
-/// Method whose estimate is used.
+/// Method whose estimate is used: that of `asked`, else the first of [`METHODS`] that has one, else any other.
+///
+/// Fails if no method, or not that of `asked`, has an estimate with a covariance.
 fn method(file: &str, ships: &BTreeMap<String, IdentifiedShip>, asked: Option<&str>) -> Result<String, Failure> {
     let methods: Vec<&str> = ships.keys().map(String::as_str).collect();
     if methods.is_empty() {

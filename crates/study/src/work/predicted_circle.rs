@@ -21,8 +21,8 @@ pub struct PredictedCircle {
 
 impl PredictedCircle {
     /// Turning circle of the recommended estimate, with the rudder of the first recorded circle, else with 35° to
-    /// starboard. `None` if no K and T are accepted, if the records determine neither speed nor drift, or if the
-    /// samples do not determine its size.
+    /// starboard. `None` if no K and T are accepted, if no hull was fitted to the records, or if the drawn ships do not
+    /// determine its size.
     pub fn from_document(document: &FitDocument) -> Option<Self> {
         let verdict = document.verdict.as_ref().filter(|verdict| verdict.believe == Belief::Yes)?;
         let ship = document.ships.get(&verdict.method).filter(|ship| !ship.hulls.is_empty())?;

@@ -11,12 +11,12 @@ use simulate::SimulatedTrial;
 use crate::documents::truth::truth;
 use crate::options::{Replicates, SimulateRequest};
 
-/// Maximum number of records of one call; more than these are a study, which keeps them as rows.
+/// Maximum number of trials of one call; more are a study, which stores its trials as rows.
 const MAX_RECORDS: u64 = 100_000;
 
 /// Requested trials, in their order.
 ///
-/// Fails if no such cell or trial exists, or if there are too many records.
+/// Fails if the trials are measured records, if no such cell or trial exists, or if there are too many trials.
 pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<TrialId>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
@@ -64,7 +64,8 @@ pub struct RecordFiles {
     pub name: String,
     /// The record, as CSV.
     pub table: Vec<u8>,
-    /// Its sidecar, if the ship has a length or a calm is declared, which the table does not hold.
+    /// Its sidecar, with the declared calm, length and speed of the ship and noise of the instruments, which the table
+    /// does not hold; `None` without any of these.
     pub sidecar: Option<String>,
     /// Its true values, as JSON.
     pub truth: String,

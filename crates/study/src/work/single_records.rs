@@ -14,7 +14,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Mean amplitudes of rudder and heading of a zig-zag.
+/// Mean rudder angle of the executes, and mean peak of the heading about the base course; `None` without a zig-zag.
 fn amplitude(trial: &Trial) -> Option<Amplitude> {
     let zigzag = ZigZag::from_trial(trial).ok()?;
     let base = zigzag.base_course.heading.value;
@@ -43,7 +43,7 @@ impl RecordedZigZag<'_> {
 pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
 
 impl<'a> RecordedZigZags<'a> {
-    /// Amplitude of every record that is a zig-zag.
+    /// Zig-zags among the records; all other records are left out.
     pub fn from_trials(trials: &'a [Trial]) -> Self {
         let named = trials.iter().zip(unique_names(trials.iter().map(Trial::name)));
         Self(
@@ -86,7 +86,8 @@ impl<'a> RecordedZigZags<'a> {
 const SIGNIFICANCE: f64 = 0.05;
 
 /// `true` if K and T of some records agree: the sum of their squared distances from the weighted means, in standard
-/// deviations, is χ² with 2 (n − 1) degrees of freedom.
+/// deviations, is χ² with 2 (n − 1) degrees of freedom, tested at [`SIGNIFICANCE`] without the correlation of K and T.
+/// `None` if an estimate has no standard deviation.
 fn agree(records: &[SingleRecord]) -> Option<bool> {
     let deviation = |pick: fn(&SingleRecord) -> Quantity| -> Option<f64> {
         let all = records.iter().map(|fit| Some((pick(fit).value, pick(fit).sd.filter(|sd| *sd > 0.0)?.powi(-2))));

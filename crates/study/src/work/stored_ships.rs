@@ -21,11 +21,11 @@ const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 pub struct StoredShips {
     /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE`].
     pub ships: BTreeMap<String, IdentifiedShip>,
-    /// Method that the verdict of a fit recommends.
+    /// Method that the verdict of a fit recommends; `None` for a trace, and if the method has no covariance.
     pub verdict: Option<String>,
-    /// Reason why no K and T are accepted from the records of a fit, if that is its verdict.
+    /// Reason why no K and T are accepted from the records of a fit; `None` for any other verdict, and for a trace.
     pub disbelief: Option<String>,
-    /// Records used in the document, including those of its own priors: their files by SHA-256.
+    /// Records used in the document, including those of its priors: their files by SHA-256.
     pub records: BTreeMap<String, String>,
 }
 

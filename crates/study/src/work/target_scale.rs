@@ -13,7 +13,7 @@ use trial::{DeclaredConditions, Trial};
 use crate::options::ScaleOptions;
 use crate::records::{file_and_hash, warning_source_of};
 
-/// Name and conditions of a sidecar.
+/// Name and conditions of a sidecar; `None` without a sidecar.
 pub type Declared<'a> = Option<(&'a str, &'a DeclaredConditions)>;
 
 /// Length and approach speed that ships are scaled to: the requested ones, or those of a trial.
@@ -22,10 +22,12 @@ pub struct TargetScale {
     length: f64,
     /// Approach speed; `None` for that of the same Froude number.
     speed: Option<f64>,
+    /// `true` if the scale is requested, `false` if it is that of a trial.
     is_asked: bool,
 }
 
 impl TargetScale {
+    /// Scale of a trial with these particulars.
     pub fn from_particulars(Particulars { length, speed }: Particulars) -> Self {
         Self { length, speed: Some(speed), is_asked: false }
     }
@@ -48,8 +50,9 @@ impl TargetScale {
         }
     }
 
-    /// Scale at which a record is replayed: its own, unless a ship of its length is requested. Without a requested
-    /// speed it is that of equal Froude number, not that of the record, which loses speed from its first rows on.
+    /// Scale at which a record is replayed: the requested one if its length is that of the record, else that of the
+    /// record, else `scale`. If a length is requested without a speed, the approach speed is that of equal Froude
+    /// number, not the speed in the record, which falls from the first rows on.
     pub fn from_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
             (Some(ship), Some(asked)) if asked.is_asked && is_same_length(ship.length, asked.length) => scale,
@@ -93,7 +96,7 @@ pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Ide
     }
 }
 
-/// Record at the scale that its sidecar declares, if another one is requested: a model is replayed as a model.
+/// Record at the scale that its sidecar declares, if another one is requested: a scale model is replayed at its scale.
 pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
     let is_other =
         |other: &Particulars| record.particulars().is_some_and(|given| !is_same_length(other.length, given.length));

@@ -1,7 +1,7 @@
 //! A trace: the analysis of the crate [`trace`](mod@::trace), the particulars of the ship, and the files from which all
 //! output is made.
 
-use ::trace::{Analysis, Innovations, Settings, TraceError, Watcher};
+use ::trace::{Analysis, FoldObserver, Innovations, Settings, TraceError};
 use campaign::Observer;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
@@ -63,7 +63,7 @@ impl TraceWatch {
     }
 }
 
-impl Watcher for TraceWatch {
+impl FoldObserver for TraceWatch {
     fn begin_folds(&self, count: usize) {
         self.busy.finish_and_clear();
         self.terminal.begin(count as u64, 0);
@@ -73,15 +73,15 @@ impl Watcher for TraceWatch {
         self.terminal.advance();
     }
 
-    fn is_asked_to_stop(&self) -> bool {
-        self.terminal.is_asked_to_stop()
+    fn should_stop(&self) -> bool {
+        self.terminal.should_stop()
     }
 }
 
 /// Message for a trace interrupted during its checks.
 pub const STOPPED_MESSAGE: &str = "stopped before every record had been left out in turn; all other results are there";
 
-/// Analysis of the records together; `others` are held out. `priors` are the prior of the hull.
+/// Analysis of the records together; those of `validation` are held out. `priors` are the prior of the hull.
 ///
 /// Fails if the records cannot be brought to one scale, if the base cannot be fitted, if a requested effect cannot be
 /// in the model, or if there are priors and no hull can be fitted.
@@ -99,7 +99,7 @@ pub fn trace(
         busy: progress::busy("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
     };
-    let analysis = ::trace::trace_with_watcher(&together.trials, &together.held_out, settings, &watch);
+    let analysis = ::trace::trace_with_observer(&together.trials, &together.held_out, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let (scales, RescaledRecords { trials, held_out, .. }) = (together.scaling_sentence(), together);

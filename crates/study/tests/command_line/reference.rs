@@ -30,8 +30,9 @@ What `study` can be asked, command by command, in the words of `study COMMAND --
 const PRIORS: &str = "\
 # Priors of a hull
 
-What the particulars of a ship say of the coefficients of her MMG hull (Yasukawa and Yoshimura 2015, prime system ½ρLdU²):
-mean, standard deviation, formula and source, here for the particulars of KVLCC2. `study list priors` makes the list for any
+This page lists the prior of every coefficient of an MMG hull (Yasukawa and Yoshimura 2015, prime system ½ρLdU²): mean,
+standard deviation, formula and source. The numbers are for the particulars of KVLCC2. L is the length, B the beam, d the
+draught, C_b the block coefficient, H_R the height and A_R the area of the rudder. `study list priors` makes the list for any
 ship. k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J is the advance ratio of the straight approach. The regressions of Zhou (1983):
 
     m_x'/m' = (.398 + 11.97 C_b (1 + 3.73 d/B) − 2.89 C_b L/B (1 + 1.13 d/B)

@@ -1,6 +1,6 @@
 //! Missing moment as a smooth function of one channel, with a simultaneous band.
 //!
-//! m(t) = f(x(t)) + walk, with f a cubic spline of two inner knots at the thirds of the range of the record. Its
+//! m(t) = f(x(t)) + walk, with f a cubic spline of two inner knots at the thirds of the range of the channel x. Its
 //! coefficients are estimated by generalised least squares on the headings: the heading response to every spline is
 //! whitened by the same filter as the record. The walk absorbs the remaining moment; its intensity is the maximum
 //! likelihood estimate given f. The correlation of neighbouring rows is thus accounted for. The initial value of the
@@ -34,7 +34,7 @@ const MIN_PIVOT: f64 = 1e-10;
 /// Bounds of the level of the walk: heading variance over σ² at the end of the record for a ship without damping.
 const LEVELS: [f64; 2] = [1e-3, 1e13];
 
-/// Number of points of the grid of levels.
+/// Number of intervals of the grid of levels.
 const GRID: usize = 12;
 
 /// Maximum likelihood estimate of log λ, for a ship with K/T = `gain` (1/s²); `value` is −2 log L of a filter.

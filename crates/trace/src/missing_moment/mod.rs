@@ -83,7 +83,7 @@ pub struct MissingMoment {
     pub moment: Vec<f64>,
     /// Standard deviation of the smoothed moment, rad of rudder.
     pub sd: Vec<f64>,
-    /// Values of the recorded channels at the rows with a heading.
+    /// Values of the channels that are known, at the rows with a heading.
     pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
     pub explanations: Vec<RelativeResponse>,

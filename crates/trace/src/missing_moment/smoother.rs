@@ -4,7 +4,7 @@
 //! density λσ² (rad²/s), with σ the standard deviation of the heading noise of a full row. All variances are in units
 //! of σ². Steps between rows are exact. The initial state has a large variance, so the data determine it.
 //!
-//! Source: Rauch, Tung and Striebel (1965), Maximum likelihood estimates of linear dynamic systems.
+//! Source of the smoother: Bryson and Frazier (1963).
 
 use estimation::kalman::smoother::Smoother;
 use estimation::kalman::{Step, System};
@@ -33,11 +33,11 @@ pub(super) struct MomentRows {
     pub time: Vec<f64>,
     /// Variance of the noise of every row, in units of the variance of a full row.
     variance: Vec<f64>,
-    /// Transition and covariance for λ = 1 of every distinct step.
+    /// Duration (s) of every distinct step, with its transition and its covariance for λ = 1.
     steps: Vec<(f64, Step<STATES>)>,
     /// Index of the step before every row; the first is unused.
     of_row: Vec<usize>,
-    /// Initial variances over σ².
+    /// Initial variance of every state, in units of σ².
     prior: f64,
 }
 
@@ -124,12 +124,12 @@ impl MomentFilter {
         self.0.whitened(&column.heading, forced(column))
     }
 
-    /// Heading, yaw rate and moment of every row given all rows.
+    /// Heading (rad), yaw rate (rad/s) and moment (rad of rudder) of every row given all rows.
     pub fn smoothed(&self, column: &HeadingRows) -> Vec<[f64; STATES]> {
         self.0.smoothed(&column.heading, forced(column))
     }
 
-    /// Variance of the moment of every row given all rows, rad² over σ².
+    /// Variance of the moment (rad² of rudder) of every row given all rows, divided by σ² (rad²).
     pub fn moment_variance(&self) -> Vec<f64> {
         self.0.variances(2)
     }

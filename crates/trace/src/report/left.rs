@@ -10,8 +10,8 @@ use crate::residual_analysis::heading_error_squares;
 use crate::shape::{Candidate, NamedShape};
 
 impl TraceParts<'_> {
-    /// Random moment in addition to named effects and shapes, with its share of the squared heading error; `None` if
-    /// there is none.
+    /// Random moment in addition to named effects and shapes, with its share of the squared heading error; `None`
+    /// without a random moment.
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
         let shapes = self.location.shapes.as_ref()?;
         let rudder_deg = to_deg(self.location.unexplained_random_moment(self.rudder_noises)?.rudder);

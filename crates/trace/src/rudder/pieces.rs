@@ -58,7 +58,8 @@ impl RudderPiece {
     }
 }
 
-/// Sums of the rows before a row: of 1 (t t²) and δ (δ t, δ²).
+/// Sums over all rows before a row: t, t², y, t y and y², with the time t since the first row (s) and the change y of
+/// the angle since the first row, in standard deviations of a reading.
 type PieceSums = [f64; 5];
 
 /// Residual sums of squares of a level and of a line for the rows between two sums.
@@ -97,7 +98,7 @@ fn partition(time: &[f64], angle: &[f64], sd: f64) -> Vec<(usize, usize, bool)> 
             }
         }
         best.push(lowest);
-        // A start that is not better without its penalty is never better.
+        // A start whose cost without the penalty of its last piece is not below the minimum never becomes the best.
         let mut squares = squares.into_iter();
         open.retain(|&from| squares.next().is_some_and(|[_, line]| best[from].0 + line < lowest.0));
     }

@@ -1,9 +1,10 @@
 //! Criterion of a linearised structure under one noise law, with the columns of shapes appended.
 //!
-//! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) + Σ penalties, with s² = RSS/(n − p) or its
-//! lower bound, and the p integrated unknowns X: base, initial states and restarts behind gaps. The penalty of a
-//! coefficient of an effect or a shape is max(log n, log(1 + t²)) + 1 with its sequential t value. The penalty of a
-//! shape is the logarithm of the number of places and forms that were tried, and of a law log n per parameter.
+//! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) − Σ log |x|² + Σ penalties, with
+//! s² = RSS/(n − p) or its lower bound. X has the columns x of the p integrated unknowns: base, initial states and
+//! restarts behind gaps; |x| is the norm under white noise. The penalty of a coefficient of an effect or a shape is
+//! max(log n, log(1 + t²)) + 1 with its sequential t value. The penalty of a shape is twice the logarithm of the number
+//! of places or forms, records and classes among which it was chosen; that of a law is log n per parameter.
 //!
 //! Sources: Schwarz (1978); Harvey (1989) for the marginal likelihood with the regression integrated out.
 
@@ -63,7 +64,7 @@ pub struct WhitenedStructure {
     t_values: Vec<f64>,
     /// Residual sum of squares.
     square: f64,
-    /// Part independent of the shapes: Σ log S, log det, and the penalty of the law.
+    /// Part of the criterion independent of the shapes: Σ log S + log det(XᵀV⁻¹X) − Σ log |x|² + penalty of the law.
     fixed: f64,
     /// Degrees of freedom n − p.
     freedom: f64,
@@ -102,7 +103,7 @@ impl WhitenedStructure {
     /// Structure under a law with `law_freedom` parameters; `None` if its columns are dependent.
     pub fn new(structure: &LinearisedStructure, weights: &RecordWhitening, law_freedom: usize) -> Option<Self> {
         let blocks = structure.linear.blocks.iter().enumerate();
-        let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, weights)).collect();
+        let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.whitened(record, weights)).collect();
         let count = structure.linear.unknowns;
         let (mut matrix, mut gradient, mut square) = (vec![vec![0.0; count]; count], vec![0.0; count], 0.0);
         for block in &blocks {

@@ -41,7 +41,7 @@ impl ShipSignal {
         }
     }
 
-    /// Symbol of the signal on a page, and in a formula.
+    /// Symbol of the signal in a description, and in a formula.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Heading => ["ψ", "psi"],
@@ -108,11 +108,11 @@ impl SignalFunction {
     }
 }
 
-/// Shape of a moment, without its coefficients. Times are in s from the start of the record, lags in s, frequencies in
-/// cycles per record.
+/// Shape of a moment, without its coefficients. Instants are in s from the start of the record, durations and lags in
+/// s, frequencies in cycles per record. In functions of time, t is the time since the start as a share of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// Power of one signal, or the product of two.
+    /// Function of one signal, or the product of two such functions.
     Powers(Dependence, (ShipSignal, SignalFunction), Option<(ShipSignal, SignalFunction)>),
     /// Delay: δ(t − τ) − δ.
     Delay(f64),

@@ -1,5 +1,5 @@
-//! Random laws that compete with the shapes: white heading noise alone, plus a random moment, plus a correlated compass
-//! error, or plus waves.
+//! Random laws that compete with the shapes: white heading noise alone, or together with a random moment, a correlated
+//! compass error or waves.
 //!
 //! The size of a moment is a rudder angle over the standard deviation of a heading, in equal units.
 

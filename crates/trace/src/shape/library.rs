@@ -10,7 +10,7 @@ const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
 /// Time constants of the lags of a signal, in time units of the ship.
 const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
-/// Number of instants per record.
+/// Number of intervals between the instants of a record at which a change is tried.
 const INSTANTS: usize = 48;
 
 /// Durations of transient moments, as shares of the record.
@@ -68,11 +68,11 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
     all
 }
 
-/// All shapes that depend on the motion of the ship or on her rudder; terms linear in r or δ are those of the base.
+/// All shapes that depend on the motion of the ship or on its rudder, except r and δ themselves.
 fn state_shapes(unit: f64) -> Vec<Shape> {
     let mut all = Vec::new();
     for signal in [ShipSignal::Heading, ShipSignal::Way, ShipSignal::YawRate, ShipSignal::Rudder] {
-        // Linear terms in r and δ are the base.
+        // The base has the linear terms in r and δ.
         let is_base = matches!(signal, ShipSignal::YawRate | ShipSignal::Rudder);
         let powers = SignalFunction::ALL.into_iter().filter(|power| !is_base || *power != SignalFunction::Linear);
         all.extend(powers.map(|power| Shape::Powers(signal.dependence(), (signal, power), None)));

@@ -42,7 +42,7 @@ const MIN_SMOOTH_GAIN: f64 = 1.5;
 /// Maximum number of updates of the response under the best law.
 const MAX_ROUNDS: usize = 3;
 
-/// Relative change of 1/T that ends the updates.
+/// Relative change of 1/T below which the updates end.
 const TIME_TOLERANCE: f64 = 0.02;
 
 /// Time unit of the lags over T.
@@ -56,7 +56,7 @@ const MAX_TIME_S: f64 = 1000.0;
 pub struct NamedShape {
     /// Shape.
     pub candidate: Arc<Candidate>,
-    /// Loss without the shape, nats.
+    /// Loss of log likelihood without the shape, nats.
     pub loss: f64,
     /// Root mean square of the moment as a rudder angle, rad.
     pub size: f64,
@@ -82,11 +82,11 @@ pub struct MomentSize {
 pub struct ShapeAnalysis {
     /// Best explanation; without shapes if none is significant.
     pub best: Explanation,
-    /// Equivalent explanations, within [`MAX_EQUIVALENT_GAIN_NATS`] of the best.
+    /// Equivalent explanations: with no more shapes than the best, and within [`MAX_EQUIVALENT_GAIN_NATS`] of it.
     pub equivalent: Vec<Explanation>,
-    /// Coefficients of the best, as root mean square moments, rad of rudder.
+    /// Coefficients of every shape of the best explanation, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
-    /// Losses without each of the shapes of the best, nats.
+    /// Loss of log likelihood without each shape of the best explanation, nats.
     pub losses: Vec<f64>,
     /// Gain in log likelihood of the best explanation over the best random law without shapes, nats.
     pub gain_nats: f64,
@@ -97,7 +97,7 @@ pub struct ShapeAnalysis {
     pub power: f64,
     /// `true` if a smooth moment of unknown shape is significant and no shape is.
     pub is_smooth: bool,
-    /// Random moment in addition to the shapes.
+    /// Random moment in addition to the shapes; `None` without one.
     pub moment: Option<MomentSize>,
     /// Standard deviations of the white noise of a row of the records, rad.
     pub heading_sd: Vec<f64>,

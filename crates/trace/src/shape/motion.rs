@@ -104,7 +104,7 @@ impl<'a> PredictedMotion<'a> {
         self.record.observed.iter().map(at).collect()
     }
 
-    /// Signal at the rows after a first-order lag (s).
+    /// Signal at the rows after a first-order lag of time constant `lag` (s).
     pub fn lagged(&self, signal: impl Fn(usize) -> f64, lag: f64) -> Vec<f64> {
         let mut all = vec![signal(0)];
         for (row, transition) in self.transitions.iter().enumerate() {

@@ -121,7 +121,8 @@ impl<'a> StructurePoint<'a> {
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 
-    /// Point after a step of all unknowns of [`linearised`](Self::linearised), within their bounds.
+    /// Point after a step of all unknowns of [`linearised`](Self::linearised), within their bounds. 1/T decreases by at
+    /// most half of its magnitude and increases by at most its magnitude.
     #[must_use]
     pub fn after_step(&self, step: &[f64]) -> Self {
         let mut next = self.clone();

@@ -14,7 +14,7 @@ use super::motion::PredictedMotion;
 use crate::linear::{HeadingSensitivities, Linearisation};
 use crate::weights::RecordWhitening;
 
-/// Number of classes of shapes, for the penalty of the choice among them.
+/// Number of classes of shapes in the penalty of the choice among them.
 const CLASSES: f64 = 11.0;
 
 /// Maximum number of shapes.
@@ -23,7 +23,7 @@ const MAX_SHAPES: usize = 3;
 /// Number of best shapes whose law is chosen again.
 const FINALISTS: usize = 5;
 
-/// Number of classes of shapes of which the law of the best shape is chosen again.
+/// Number of classes of shapes whose best shape has its law chosen again.
 const CLASS_FINALISTS: usize = 6;
 
 /// Maximum number of explanations that are refined.
@@ -39,7 +39,7 @@ pub struct Candidate {
     pub shape: Shape,
     /// Index of the record in which the shape acts; `None` for all records.
     pub record: Option<usize>,
-    /// Penalty of the choice among places, forms and classes.
+    /// Penalty of the choice among places or forms, records and classes.
     pub penalty: f64,
     columns: Vec<HeadingColumn>,
 }

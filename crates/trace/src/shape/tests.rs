@@ -123,7 +123,7 @@ fn shapes_of_time_belong_to_their_record() {
     assert_eq!((only, shape.is_time_dependent()), (Some(1), true), "{shape:?}");
 }
 
-/// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) + penalties, and with one more column.
+/// Criterion by dense matrices: (n − p) log s² + log det(XᵀX) − Σ log |x|² + penalties, and with one more column.
 #[test]
 fn criteria_are_those_of_dense_matrices() {
     let rows = 40;

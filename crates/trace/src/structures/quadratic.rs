@@ -9,13 +9,13 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use crate::fit::{log_normaliser, prior_deviation};
 use crate::model::{Structure, Term};
 
-/// Maximum number of structures refitted per round.
+/// Maximum number of best structures that are refitted after a screening.
 const MAX_REFITS: usize = 4;
 
 /// Maximum log odds of the best structure against a structure that is refitted.
 pub(super) const MAX_LOG_ODDS: f64 = 5.0;
 
-/// Number of structures with one more term that are refitted per round.
+/// Maximum number of further structures, with one more term, that are refitted after a screening.
 const MAX_ADDITIONS: usize = 2;
 
 /// Evidence for a candidate.
@@ -58,7 +58,7 @@ impl QuadraticPosterior {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));
             RemovableTerm { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
-        // A coefficient that would leave its bounds at the neutral value is fixed at zero.
+        // A term with a coefficient that would leave its bounds at the neutral value is removed, the worst first.
         for _ in 0..ranges.len() {
             let leaves = |number: &usize| {
                 let term = &structure.terms[*number];

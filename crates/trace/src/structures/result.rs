@@ -7,7 +7,7 @@ use crate::candidates::PRIOR_PROBABILITY;
 use crate::fit::StructureFit;
 use crate::model::{Structure, TermName};
 
-/// Maximum odds against a member of the average, relative to the best structure.
+/// Maximum odds of the best structure against a member of the average.
 const MAX_MEMBER_ODDS: f64 = 20.0;
 
 /// Fitted structure with its posterior weight.
@@ -34,7 +34,7 @@ pub struct Structures {
     /// Evidence for every candidate term.
     pub support: BTreeMap<TermName, TermEvidence>,
     /// Structures under other noise laws: weight, names of the terms.
-    pub(super) rivals: Vec<(f64, Vec<TermName>)>,
+    pub(super) other_law_structures: Vec<(f64, Vec<TermName>)>,
 }
 
 /// Names of the terms of a structure.
@@ -63,7 +63,8 @@ impl Structures {
             for (name, support) in &rival.support {
                 self.support.entry(*name).or_insert(*support);
             }
-            self.rivals.extend(rival.weighed_names().map(|(weight, names)| (weight * odds / total, names)));
+            self.other_law_structures
+                .extend(rival.weighed_names().map(|(weight, names)| (weight * odds / total, names)));
         }
         for probability in self.probabilities.values_mut() {
             *probability = 0.0;
@@ -80,7 +81,8 @@ impl Structures {
         self.inclusion_probability(|name| name.0 == id && name.2 == record)
     }
 
-    /// Mean square residual of the most probable structure without moments of time, rad²; infinite if there is none.
+    /// Mean square residual of the most probable structure without moments of time, rad²; infinite if all structures
+    /// have such a moment.
     pub fn ship_mean_square(&self) -> f64 {
         let is_ship =
             |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_time_dependent());
@@ -129,7 +131,7 @@ impl Structures {
     /// Weights of the structures under all noise laws, with the names of their terms.
     fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
         let chosen = self.all.iter().map(|weighed| (weighed.weight, names(&weighed.fit.structure)));
-        chosen.chain(self.rivals.iter().cloned())
+        chosen.chain(self.other_law_structures.iter().cloned())
     }
 }
 
@@ -146,7 +148,7 @@ mod tests {
             probabilities: BTreeMap::new(),
             visibility: BTreeMap::new(),
             support: BTreeMap::new(),
-            rivals: rivals.iter().map(|(weight, names)| (*weight, names.to_vec())).collect(),
+            other_law_structures: rivals.iter().map(|(weight, names)| (*weight, names.to_vec())).collect(),
         }
     }
 

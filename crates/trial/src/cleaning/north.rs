@@ -11,7 +11,7 @@ use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
 use crate::wording::counted;
 
-/// Minimum ratio of the rate in a sweep to the 90th percentile of the rates.
+/// Minimum ratio of the rate at the beginning of a sweep to the 90th percentile of the rates.
 const MIN_RATE_RATIO: f64 = 5.0;
 
 /// Maximum distance from north at the beginning of a sweep, rad.
@@ -23,7 +23,7 @@ const MIN_EXCURSION: f64 = 0.52;
 /// Maximum distance between beginning and end of a sweep beyond the turn of the ship, rad: 3°.
 const RETURN_TOLERANCE: f64 = 0.05;
 
-/// Minimum ratio of the mean rate up to the excursion to the usual rate.
+/// Minimum ratio of the mean rate, up to the minimum excursion, to the 90th percentile of the rates.
 const MIN_MEAN_RATIO: f64 = 3.0;
 
 /// Maximum distance between beginning and end of a sweep as a share of the excursion.
@@ -38,7 +38,8 @@ const SETTLING: usize = 2;
 /// Maximum share of headings in sweeps.
 const MAX_SWEPT_SHARE: f64 = 0.6;
 
-/// Omits headings of sweeps through the compass.
+/// Sets headings in sweeps through the compass, and in the settling time after them, to missing and returns the
+/// warning. `None`, and no change, without a sweep or with more than [`MAX_SWEPT_SHARE`] of the headings in sweeps.
 pub(super) fn blank_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
@@ -78,7 +79,8 @@ pub(super) fn blank_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     )))
 }
 
-/// Range of headings from the last before a sweep, `at`, to the first behind it; `None` if no sweep begins.
+/// Indices into `read` from the last heading before a sweep, `at`, up to the first behind it, which is excluded; `None`
+/// if no sweep begins at `at`. `usual` is the 90th percentile of the rates, rad/s.
 fn sweep(time: &[f64], heading: &[f64], read: &[usize], at: usize, usual: f64) -> Option<Range<usize>> {
     let begin = heading[read[at]];
     let from_north = |psi: f64| (psi + PI).rem_euclid(TAU) - PI;

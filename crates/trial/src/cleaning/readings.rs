@@ -15,7 +15,8 @@ use crate::wording::counted;
 /// Minimum height of a spike or a jump, rad: 2°, more than digits and waves cause between two readings.
 const MIN_HEIGHT: f64 = 0.035;
 
-/// Minimum height of a spike or a jump in standard deviations from the straight line between neighbours.
+/// Minimum height of a spike or a jump in robust standard deviations of the readings from the straight line between
+/// their neighbours.
 const MIN_HEIGHT_SDS: f64 = 12.0;
 
 /// Minimum ratio of the height of a spike to the distance between its neighbours.
@@ -30,7 +31,7 @@ const LOST_POLLS: (usize, f64) = (3, 0.4);
 /// Minimum share of the lost value among the readings far from both neighbours: a noisy sensor has many values.
 const MIN_LOST_SHARE: f64 = 0.8;
 
-/// Number of parts of a radian to which a repeated value is compared.
+/// Resolution of the comparison of values, 1/rad: values that agree to 1e-9 rad are the same.
 const PER_RAD: f64 = 1e9;
 
 /// Minimum ratio of the distance of a lost poll from its neighbours to the distance between them.
@@ -47,7 +48,8 @@ fn readings(values: &[f64]) -> impl Iterator<Item = usize> {
     (0..values.len()).filter(|&row| values[row].is_finite())
 }
 
-/// Distance of every inner reading from the straight line between its neighbours, with its rows.
+/// Rows `[before, at, after]` of every inner reading and its neighbours, and the deviation of the reading from the
+/// straight line between them.
 pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
     let (mut before, mut last) = (None, None);
     readings(values).filter_map(move |row| {
@@ -69,9 +71,12 @@ fn deviation_sd(time: &[f64], values: &[f64]) -> Option<f64> {
     Some(sizes).filter(|sizes| sizes.len() > 2 * MIN_CLIPPED_ROWS).and_then(upper_median).map(|size| 1.4826 * size)
 }
 
-/// Sets lost polls to missing: single readings of the same value, with both neighbours far from it and near each
-/// other. A logger writes zero for an unanswered poll, and a calibration turns it into another number. A channel
-/// that passes through the value has neighbours on either side of it.
+/// Sets lost polls of heading, rudder and yaw rate to missing, appends them to `rejected` and returns one warning per
+/// channel.
+///
+/// A logger writes zero for an unanswered poll, and a calibration may turn this zero into another number. Lost polls
+/// are therefore single readings that all have one value. Both neighbours are far from it, on the same side, and near
+/// each other. A reading with one neighbour above and one below is kept: there the channel passes through the value.
 pub(super) fn blank_lost_polls(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let time = &columns.time;
     let mut warnings = Vec::new();
@@ -145,7 +150,8 @@ pub(super) fn blank_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     warnings
 }
 
-/// Reports jumps of the heading: steps far larger than the steps before and after.
+/// Reports jumps of the heading: steps far larger than the steps before and after. `None` without a jump, and if jumps
+/// are so frequent that they are the noise of the sensor.
 fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let mut jumps = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
@@ -173,7 +179,8 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedR
     )))
 }
 
-/// Sets a yaw rate to missing if it stays at the end of its scale while the heading turns faster.
+/// Sets the readings of a yaw rate at the end of its scale to missing if the heading turns faster there, and returns
+/// the warning; `None` for a yaw rate within its scale.
 pub(super) fn blank_clipped(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);

@@ -12,13 +12,15 @@ const PORT: std::ops::RangeInclusive<f64> = 1.5 * std::f64::consts::PI..=std::f6
 /// Maximum angle to starboard in that notation, rad.
 const MAX_STARBOARD: f64 = 1.05;
 
-/// Minimum dead band of a heading, rad (0.4°), and in its digits.
+/// Minimum dead band of a heading, rad (0.4°), and in steps of its digits.
 const MIN_DEAD_BAND: (f64, f64) = (0.007, 4.0);
 
-/// Minimum share of changes after a repeated heading, and minimum number of changes, of a heading written on change.
+/// Minimum share of changes that follow a repeated heading, and minimum number of changes, of a heading that the logger
+/// writes only after a minimum change.
 const ON_CHANGE: (f64, usize) = (0.5, 12);
 
-/// Subtracts 360° from rudder angles to port that are written as angles up to 360°.
+/// Subtracts 360° from rudder angles and orders to port that are written as angles up to 360°, and returns the warning;
+/// `None` for another notation.
 pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
     let mut count = 0;
     for channel in [Channel::Rudder, Channel::RudderOrder] {
@@ -39,8 +41,8 @@ pub(super) fn below_360(columns: &mut Columns) -> Option<Warning> {
     })
 }
 
-/// Replaces repeated readings by NaN if the logger writes the heading only when it changes; returns the warning, `None`
-/// if nothing was replaced.
+/// Replaces repeated readings by NaN if the logger writes the heading only after a minimum change; returns the warning,
+/// `None` if nothing was replaced.
 pub(super) fn blank_held(columns: &mut Columns) -> Option<Warning> {
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     let read: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();

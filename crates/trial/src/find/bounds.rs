@@ -25,10 +25,10 @@ const STEADY_HEADING: f64 = 0.05;
 /// Minimum length of a steady approach as a share of the maximum length; shorter if the log begins with it.
 const MIN_APPROACH_SHARE: f64 = 0.25;
 
-/// Revolutions of a stopped engine, as a share of the usual revolutions.
+/// Maximum revolutions of a stopped engine, as a share of the usual revolutions.
 const STOPPED_SHARE: f64 = 0.5;
 
-/// Length of a gap in the approach, usual time steps.
+/// Minimum length of a gap in the approach, usual time steps.
 const GAP_STEPS: f64 = 30.0;
 
 /// Maximum number of holds for the time of the first execute; more holds do not make it more certain.
@@ -40,10 +40,10 @@ const RAMP_TOLERANCE: f64 = 0.6;
 /// Minimum number of rows on the line of a movement.
 const MIN_RAMP_ROWS: usize = 3;
 
-/// Number of rows before a movement whose median is the rudder angle before it.
+/// Number of rows, in addition to the last row at rest, whose median is the rudder angle before a movement.
 const MEDIAN_ROWS: usize = 8;
 
-/// Manoeuvres of patterns, which are in order of time and do not overlap.
+/// Manoeuvres with their bounds, from patterns that are in order of time and do not overlap.
 pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<DetectedManoeuvre> {
     let time = record.log.time;
     let mut free = 0;
@@ -97,14 +97,14 @@ fn before_stop(record: &PreparedLog, pattern: &Pattern) -> usize {
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
     let stopped = STOPPED_SHARE * finite_median(propeller.iter().map(|n| n.abs()));
     let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
-    // A single row without revolutions is a fault of the channel; the last row has no next row.
+    // A single row without revolutions is a fault of the channel, except the last row, which has no next row.
     (0..propeller.len())
         .find(|&row| is_stopped(row) && is_stopped(row + 1))
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first of the holds. The search begins at row `free` and `scale`
-/// seconds before the hold or, if the rudder is slow, somewhat earlier.
+/// First row in which the rudder moves into the first of the holds. The search begins `scale` seconds before the hold,
+/// earlier for a slow rudder, but not before row `free`.
 pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(MAX_TIMING_HOLDS)];
@@ -141,13 +141,13 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
     })
 }
 
-/// Last row before a hold in which the rudder has at most half of its angle.
+/// Last row before a hold in which the rudder has at most half of its angle; `None` if the record has no such row.
 fn half_way(angle: &[f64], hold: &holds::Hold) -> Option<usize> {
     (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())
 }
 
-/// First row on the line of a movement into a hold, at a rate in rad/s. Steering to the same side just before the
-/// movement shifts the intersection of that line with the old level, but is not on it.
+/// First row on the line of a movement into a hold, at a rate in rad/s; 0 for a movement with too few rows. Steering to
+/// the same side just before the movement shifts the intersection of that line with the old level, but is not on it.
 fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f64) -> usize {
     let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
@@ -190,8 +190,10 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> O
 
 /// Part of the approach that belongs to a manoeuvre.
 struct ApproachSegment {
+    /// First row of the part: before the execute in a steady approach, else the execute.
     first: usize,
     approach: Approach,
+    /// Relative change of speed in the approach; `None` if no speed was recorded.
     speed_change: Option<f64>,
 }
 
@@ -249,7 +251,8 @@ fn steady_rudder(record: &PreparedLog, pattern: &Pattern, earliest: usize, start
     (earliest..start).rev().take_while(is_steady).last()
 }
 
-/// Relative change of a channel from the first to the last third of a range of rows; `None` if it was not recorded.
+/// Change of a channel from the first to the last third of the rows `first..end`, as a share of the larger; `None`
+/// without readings in both thirds, and if both means are zero.
 fn change(channel: Option<&[f64]>, first: usize, end: usize) -> Option<f64> {
     let values = channel?.get(first..end)?;
     let third = values.len().div_ceil(3);

@@ -22,8 +22,8 @@ impl HeadingReadings {
         Self { time, heading }
     }
 
-    /// Heading at a time, rad: the median within `half_width` of it, else interpolated between its neighbours if
-    /// both are within `reach`.
+    /// Heading at a time, rad: the median within `half_width` (s) of it, else interpolated between its neighbours if
+    /// both are within `reach` (s), else that of the only neighbour within reach. `None` without such a neighbour.
     pub fn heading_near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
         // The window is symmetric: at the end of a record a one-sided median would lag behind a turn.
         let (begin, end) = (*self.time.first()?, *self.time.last()?);
@@ -46,25 +46,26 @@ impl HeadingReadings {
         }
     }
 
-    /// Change of heading between two times, rad; each heading is a median over a twentieth of the time between them.
+    /// Change of heading between two times, rad; each heading is a median over a tenth of the time between them, half
+    /// before and half after. `None` if headings are missing there.
     pub fn heading_change(&self, from: f64, to: f64) -> Option<f64> {
         let time = to - from;
         let [before, after] = [from, to].map(|t| self.heading_near(t, 0.05 * time, 0.25 * time));
         Some(after? - before?)
     }
 
-    /// Mean rate between two times, rad/s.
+    /// Mean rate between two times, rad/s; `None` if headings are missing there, and unless `to` is later than `from`.
     pub fn mean_rate(&self, from: f64, to: f64) -> Option<f64> {
         (to > from).then(|| self.heading_change(from, to))?.map(|change| change / (to - from))
     }
 }
 
-/// Median of at most [`MAX_MEDIAN_ROWS`] values, evenly selected.
+/// Median of at most [`MAX_MEDIAN_ROWS`] values, evenly selected; `None` if none of them is finite.
 pub(crate) fn thinned_median(values: &[f64]) -> Option<f64> {
     median(&mut thinned(values))
 }
 
-/// At most about [`MAX_MEDIAN_ROWS`] values, evenly selected, all finite.
+/// At most [`MAX_MEDIAN_ROWS`] values, evenly selected; those that are not finite are omitted.
 pub(crate) fn thinned(values: &[f64]) -> Vec<f64> {
     let step = values.len().div_ceil(MAX_MEDIAN_ROWS).max(1);
     // The selection is centred, so that a slope is thinned to its middle.

@@ -97,9 +97,9 @@ pub struct DetectedManoeuvre {
     /// Kind of manoeuvre with its angles as executed: the rudder of a zig-zag is the mean of the medians over the holds
     /// to each side, its heading the median over the executes; `None` if the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
-    /// First row of the part to analyse, s: the first execute, or before it if the approach was steady.
+    /// Time of the first row of the part to analyse, s: the first execute, or earlier if the approach was steady.
     pub from: f64,
-    /// Last row of the part, s; the rudder is still held and the propeller turns.
+    /// Time of the last row of the part, s; the rudder is still held and the propeller turns.
     pub until: f64,
     /// Time of the first row in which the rudder moves for this manoeuvre, s; for a straight piece its first row.
     pub start: f64,
@@ -122,7 +122,8 @@ impl DetectedManoeuvre {
         }
     }
 
-    /// Nominal rudder and change of heading, rad, positive to starboard; without a sign for a zig-zag.
+    /// Rudder angle and change of heading as executed, rad, positive to starboard; without a sign for a zig-zag. Both
+    /// are `None` for a straight piece; the change of heading is `None` for a pull-out and a spiral, too.
     pub fn angles(&self) -> [Option<f64>; 2] {
         let Some(manoeuvre) = &self.manoeuvre else { return [None; 2] };
         let (rudder, sign) = (manoeuvre.max_rudder(), manoeuvre.first_side().sign());

@@ -15,14 +15,14 @@ pub struct Signals<'a> {
     pub rudder: &'a [f64],
     /// Heading, rad, unwrapped; NaN if missing.
     pub heading: &'a [f64],
-    /// Speed, m/s.
+    /// Speed, m/s; `None` if it was not recorded.
     pub speed: Option<&'a [f64]>,
-    /// Revolutions of the propeller, any unit.
+    /// Revolutions of the propeller, in any unit; `None` if they were not recorded.
     pub propeller: Option<&'a [f64]>,
 }
 
 impl Signals<'_> {
-    /// `true` if the channels are as documented; otherwise no manoeuvre is detected.
+    /// `true` if time, rudder and heading are as documented; otherwise no manoeuvre is detected.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();
         self.rudder.len() == rows

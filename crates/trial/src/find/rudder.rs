@@ -30,16 +30,16 @@ const MAX_PAUSE_SHARE: f64 = 0.5;
 /// Minimum duration of a hold as a share of the adjacent holds.
 const SHORT_SHARE: f64 = 0.2;
 
-/// Maximum number of rows off the level within a hold.
+/// Maximum number of consecutive rows off the level within a hold.
 const MAX_STRAY_ROWS: usize = 2;
 
 /// Minimum number of rows of a hold.
 const MIN_ROWS: usize = 3;
 
-/// Length of a gap that ends a hold, usual time steps.
+/// Minimum length of a gap that ends a hold, usual time steps.
 const GAP_STEPS: f64 = 30.0;
 
-/// Interval of rows over which the rudder angle does not change.
+/// Interval of rows over which the rudder stays near one angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// First row.
@@ -67,7 +67,7 @@ impl Hold {
     }
 }
 
-/// Rudder angle of a log with the intervals over which it does not change.
+/// Rudder angle of a log, with its noise and its holds.
 #[derive(Debug)]
 pub(crate) struct RudderHolds {
     /// Rudder angle without spikes of one row, rad.
@@ -76,7 +76,7 @@ pub(crate) struct RudderHolds {
     pub noise_sd: f64,
     /// Half-width of the narrowest band of a hold, rad.
     pub floor: f64,
-    /// Usual time between rows, s; 0 for less than two rows.
+    /// Median time between rows, s; 0 for fewer than two rows.
     pub step: f64,
     /// Neutral rudder angle, rad: the median of the log, or 0 if the median is not small.
     pub neutral: f64,
@@ -87,7 +87,7 @@ pub(crate) struct RudderHolds {
 }
 
 impl RudderHolds {
-    /// Holds of a rudder (rad) over time (s); empty for a log of less than three rows.
+    /// Holds of a rudder (rad) over time (s); empty for a log of fewer than three rows.
     pub fn from_signal(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
         let step = finite_median(time.windows(2).map(|pair| pair[1] - pair[0]));
@@ -155,7 +155,8 @@ impl RudderHolds {
         merged
     }
 
-    /// The rows of a cut without the ends of the adjacent movements; `None` if the rudder moved in all of them.
+    /// Hold in the rows between two cuts, without the ends of the adjacent movements; `None` if too few rows remain or
+    /// the rudder moves through the band.
     fn hold(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Hold> {
         if last + 1 - first < MIN_ROWS {
             return None;
@@ -214,8 +215,8 @@ pub(crate) fn finite_median(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
-/// Step of a rounded rudder that flickers, rad: the 5th percentile of the differences between rows; 0 if the rudder
-/// seldom changes.
+/// Step of a rounded rudder that flickers, rad: the 5th percentile of the changes between rows, without rows that
+/// repeat the previous one; 0 if the rudder seldom changes.
 fn smallest_step(rudder: &[f64]) -> f64 {
     let steps = rudder.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     // Values that differ by rounding of the arithmetic count as equal.

@@ -10,7 +10,7 @@ use crate::manoeuvre::Manoeuvre;
 /// Minimum number of holds of a sweep from side to side.
 const MIN_HOLDS: usize = 5;
 
-/// Minimum number of holds of a partial sweep before or after it.
+/// Minimum number of holds of a partial sweep before or after a sweep from side to side.
 const MIN_PART_HOLDS: usize = 3;
 
 /// Minimum step of the rudder, rad.

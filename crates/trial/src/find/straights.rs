@@ -1,6 +1,6 @@
 //! Straight pieces between the manoeuvres of a log: the heading stays near a course and the rudder near amidships, by
-//! hand, by autopilot or without steering. A ship at rest also keeps her heading; it is excluded if speed or
-//! propeller determines that.
+//! hand, by autopilot or without steering. A ship at rest also keeps her heading; such rows are excluded if speed or
+//! propeller was recorded.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ const MIN_DURATION_SHARE: f64 = 0.02;
 /// Minimum number of rows of a piece.
 const MIN_ROWS: usize = 20;
 
-/// Speed and revolutions of a ship at rest, as shares of the usual values.
+/// Maximum speed and revolutions of a ship at rest, as shares of the usual values.
 const AT_REST_SHARE: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.

@@ -22,7 +22,7 @@ const MIN_TURN: f64 = FRAC_PI_2;
 /// Maximum rudder amidships, as a share of the rudder of the turn.
 const MAX_AMIDSHIPS_SHARE: f64 = 0.3;
 
-/// Change of heading at the rate of the turn that takes one time scale of a pull-out, rad.
+/// Change of heading that defines the time scale of a pull-out: the time that it takes at the rate of the turn, rad.
 const PULL_OUT_TURN: f64 = 30.0_f64.to_radians();
 
 /// Minimum duration of the rudder amidships, time scales.
@@ -61,7 +61,8 @@ fn is_whole(record: &PreparedLog, hold: &Hold) -> bool {
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
 }
 
-/// Pull-out after a turn: the rudder amidships until the yaw rate is steady or the rudder moves.
+/// Pull-out after a turn: the rudder amidships until the yaw rate is steady or the rudder moves. `None` if the rudder
+/// is not put amidships soon or long enough, or if headings are missing.
 fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
     let rate = record.course.mean_rate(end_of_turn, turn.until)?.abs();

@@ -39,7 +39,7 @@ const MAX_SWING_RATIO: f64 = 1.7;
 /// more if the hold begins within a reversal.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
 
-/// The same for a trial of only three holds: narrow, against chance.
+/// The same for a trial of only three holds: narrow, because three holds may fit by chance.
 const ONLY_SWING: (f64, f64) = (0.4, 0.62);
 
 /// Length of the straight approach of a trial of three holds, as a share of the first hold.
@@ -93,7 +93,7 @@ pub(crate) fn zigzags(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
 /// Holds to alternate sides.
 struct Chain {
     holds: Vec<Hold>,
-    /// Start of the next search: the last hold of this chain may be the first of the next.
+    /// Index of the hold at which the next search begins: the last hold of this chain may be the first of the next.
     next: usize,
 }
 
@@ -142,7 +142,7 @@ fn is_opposed(a: f64, b: f64, neutral: f64) -> bool {
     })
 }
 
-/// `true` for levels of the same side.
+/// `true` for levels that agree as those of two holds to the same side.
 fn is_level(a: f64, b: f64) -> bool {
     let size = a.abs().max(b.abs());
     (a - b).abs() <= (SIDE_TOLERANCE * size).max(MIN_SIDE_TOLERANCE.min(0.4 * size))
@@ -194,7 +194,7 @@ fn side(holds: &[Hold], index: usize) -> f64 {
     (holds[index].level - holds[neighbour].level).signum()
 }
 
-/// Heading at the end of a hold: between its last row and the next.
+/// Heading at the end of a hold, between its last row and the next, rad; `None` if headings are missing there.
 fn heading_at_end(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
     record.course.heading_near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
@@ -242,7 +242,7 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
 }
 
 /// `true` if the ship went straight with the rudder about amidships before the first of three holds, which began at
-/// the time `from` (s) and the heading `began` (rad), and if the log does not contain the approach.
+/// the time `from` (s) and the heading `began` (rad); also `true` if the log does not contain the approach.
 fn is_straight_before(record: &PreparedLog, holds: &[Hold], from: f64, began: f64, swing: f64) -> bool {
     // In the second hold the change of heading is twice as large, and the ship first stops a turn.
     if holds[1].duration() <= holds[0].duration() {
@@ -267,6 +267,7 @@ fn is_held(record: &PreparedLog, holds: &[Hold]) -> bool {
 }
 
 /// Median change of heading from the base course to the reversals, rad; the base course is midway between the sides.
+/// `None` if a heading is missing.
 fn deviation(holds: &[Hold], headings: &[Option<f64>]) -> Option<f64> {
     let reversals = headings.len() - 1;
     let mut sides = [Vec::new(), Vec::new()];

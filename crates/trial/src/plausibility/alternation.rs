@@ -12,8 +12,8 @@ const MIN_DISAGREEMENT: f64 = 0.006;
 /// Minimum number of deviations.
 const MIN_DEVIATIONS: usize = 40;
 
-/// Maximum share of the sum of squares next to repeated readings; a staircase (written on change, or in coarse steps)
-/// has a larger share.
+/// Maximum share of the sum of squares next to repeated readings; a channel in coarse steps, or one that the logger
+/// writes only when it changes, has a larger share.
 const MAX_REPEATED_SHARE: f64 = 0.5;
 
 /// Disagreement of the two sensors of a channel (rms), in the unit of the values; `None` for a single sensor.
@@ -60,7 +60,7 @@ mod tests {
         let noise = |row: usize| 0.02 * ((row as f64 * 12.9898).sin() * 43758.5453).fract();
         assert_eq!(sensor_disagreement(&time, &values(&|row, t| signal(t) + noise(row))), None);
         assert_eq!(sensor_disagreement(&time, &values(&|_, t| (signal(t) / 0.02).round() * 0.02)), None);
-        // Values held for every other row, as in a channel written on change.
+        // Every value is repeated once, as by a logger that writes a channel only when it changes.
         assert_eq!(sensor_disagreement(&time, &values(&|row, _| 0.02 * (row / 2) as f64)), None);
     }
 }

@@ -29,7 +29,7 @@ pub(crate) fn is_derivative(trial: &Trial) -> bool {
     })
 }
 
-/// `true` if the changes of a rate equal the changes of a difference quotient over `rows` rows that is mostly noise.
+/// `true` if the changes of a rate follow the changes of a difference quotient over `rows` rows that is mostly noise.
 fn repeats(slopes: &[f64], rates: &[f64], rows: usize) -> bool {
     let changes = |values: &[f64]| values.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>();
     let [slopes, rates] = [slopes, rates].map(changes);

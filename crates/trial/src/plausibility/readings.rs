@@ -63,7 +63,7 @@ fn runs(values: &[f64]) -> Vec<Range<usize>> {
 }
 
 /// Last decimal of the larger half of the values, rad; numbers with a fixed count of significant digits have finer
-/// decimals near zero. Zero for values without decimals of a degree.
+/// decimals near zero. 0 for decimals finer than a thousandth of a degree.
 fn digit(values: &[f64]) -> f64 {
     let half = 0.5 * values.iter().copied().filter(|x| x.is_finite()).fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let large: Vec<f64> = values.iter().filter(|value| value.abs() >= half).map(|value| value.to_degrees()).collect();
@@ -71,7 +71,7 @@ fn digit(values: &[f64]) -> f64 {
     [1.0, 0.1, 0.01, 1e-3].into_iter().find(is_decimal).map_or(0.0, f64::to_radians)
 }
 
-/// Message of a noisy channel without movement: clipped or frozen.
+/// Message for a noisy channel that is clipped or frozen for a time; `None` for any other channel.
 fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     let mut still = runs(values);
     let least = (1.5 * digit(values)).max(MIN_NOISE_DEG.to_radians());
@@ -118,7 +118,7 @@ fn still(time: &[f64], values: &[f64], spoken: &str) -> Option<String> {
     ))
 }
 
-/// Message of a channel in coarse steps.
+/// Message for a channel in coarse steps; `None` for any other channel.
 fn coarse(values: &[f64], spoken: &str) -> Option<String> {
     let step = quantum(values);
     let step_deg = step.to_degrees();

@@ -41,8 +41,8 @@ pub(crate) fn first_order_gain(trial: &Trial) -> Option<PartialSlope> {
     partial_slope(thinned(observed).map(row).collect())
 }
 
-/// Steady-turn estimate of K (1/s), ∫δ dψ / ∫δ² dt, with the share of ∫|δ dψ| of that sign. `None` without a
-/// rudder.
+/// Steady-turn estimate of K (1/s), ∫δ dψ / ∫δ² dt, with the share of ∫|δ dψ| of that sign. `None` without a rudder
+/// angle or a change of heading.
 pub(crate) fn steady_turn_gain(trial: &Trial) -> Option<PartialSlope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let mut seen = (0..time.len()).filter(|&i| psi[i].is_finite());
@@ -85,7 +85,8 @@ pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterato
 }
 
 /// Partial slope of the last column on the last but one, with all other columns projected out of both (Frisch & Waugh
-/// 1933): the last entries of R in the QR decomposition of the columns.
+/// 1933): the last entries of R in the QR decomposition of the columns. `None` for at most N rows, if the other columns
+/// explain one of the two fully, and if numbers overflow.
 pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();

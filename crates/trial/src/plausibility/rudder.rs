@@ -24,7 +24,7 @@ const MIN_STEP_SHARE: f64 = 0.8;
 /// Maximum movement next to a step: in standard deviations of the noise, and as a share of the stroke.
 const MAX_BESIDE_STEP: (f64, f64) = (8.0, 0.1);
 
-/// Maximum negative angle of a rudder on a single side, deg.
+/// Maximum magnitude of the negative angles of a rudder on a single side, deg.
 const MAX_OTHER_SIDE_DEG: f64 = 1.0;
 
 /// Shares of its maximum angle below and above which a rudder without sign is amidships and laid.
@@ -99,12 +99,15 @@ fn in_per_cent(held_deg: f64) -> Option<f64> {
     (usual_deg > 0.0 && (order_deg - usual_deg).abs() < 0.04).then_some(usual_deg)
 }
 
-/// Stroke of the rudder: a movement to one side, with its maximum change between two rows.
+/// Stroke of the rudder: a movement to one side.
 struct RudderStroke {
     length_deg: f64,
     duration_s: f64,
+    /// Number of changes from row to row.
     rows: usize,
+    /// Maximum change between two rows.
     largest_deg: f64,
+    /// Time between these two rows.
     largest_s: f64,
 }
 

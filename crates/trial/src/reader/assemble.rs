@@ -1,5 +1,5 @@
 //! Assembly of channels with different sampling instants into the columns of a record. A row is an instant with a
-//! reading of heading, rudder or yaw rate; other observed channels are missing in it. The rudder is interpolated
+//! reading of heading, rudder, order or yaw rate; those without a reading are missing. The rudder is interpolated
 //! linearly between its readings, as the steering gear moves; so are model inputs such as speed and wind. Gaps are not
 //! interpolated.
 
@@ -22,7 +22,7 @@ const MAX_LEFT_OUT_SHARE: f64 = 0.2;
 /// Tolerance of equal instants, s.
 const TIME_TOLERANCE: f64 = 1e-6;
 
-/// Observed channels: their readings are the rows.
+/// Observed channels: the instants of their readings are the rows.
 const OBSERVED: [Channel; 4] = [Channel::Heading, Channel::Rudder, Channel::RudderOrder, Channel::YawRate];
 
 /// Columns of series with different instants; rows are the union of the instants of the observed channels.
@@ -35,7 +35,7 @@ pub(super) fn merge_series(series: &[Series]) -> Columns {
     Columns { time, channels, unknown: Vec::new() }
 }
 
-/// Values of a channel at the rows: its readings, for a model input interpolated between them.
+/// Values of a channel at the rows: its readings, and those of a model input also interpolated between them.
 fn at_rows(series: &Series, time: &[f64]) -> Vec<f64> {
     let mut values = vec![f64::NAN; time.len()];
     if OBSERVED.contains(&series.channel) {
@@ -77,12 +77,12 @@ fn wrapped(turn: f64) -> f64 {
     turn - (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
-/// Median time between instants, s.
+/// Median time between instants, s; `None` for fewer than two instants.
 fn usual_interval(time: &[f64]) -> Option<f64> {
     upper_median(time.windows(2).map(|pair| pair[1] - pair[0]))
 }
 
-/// Readings of the channels of a table, without its unknown columns.
+/// Readings of the channels of a table, without its unknown columns; `offset` (s) is added to their times.
 pub(super) fn split_columns(columns: Columns, offset: f64) -> Vec<Series> {
     let Columns { time, channels, .. } = columns;
     let readings = |(channel, values): (Channel, Vec<f64>)| {

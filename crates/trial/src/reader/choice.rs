@@ -38,12 +38,12 @@ impl Log {
         self.into_manoeuvre(None)?.into_trial(ship)
     }
 
-    /// Part with the manoeuvre of this number, from 1; without a number the part of the only zig-zag, if much of
-    /// the log is outside it. The choice is a warning of the log.
+    /// Part with the manoeuvre of this number, from 1. Without a number, the part of the only zig-zag if much of the
+    /// log is outside it, else the whole log or the part declared by its sidecar. A choice adds a warning to the log.
     ///
     /// Fails for a number without a manoeuvre, and, without a number, if the log contains several zig-zags.
     pub fn into_manoeuvre(mut self, number: Option<usize>) -> Result<Self, ReadError> {
-        if number.is_none() && self.has_declared_part() {
+        if number.is_none() && self.has_declared_interval() {
             return Ok(self);
         }
         let manoeuvres = self.manoeuvres();
@@ -98,7 +98,7 @@ fn zig_zags(manoeuvres: &[DetectedManoeuvre]) -> Vec<(usize, &DetectedManoeuvre)
     numbered.filter(|(_, entry)| matches!(entry.manoeuvre, Some(Manoeuvre::ZigZag { .. }))).collect()
 }
 
-/// Warning of a log without a recognised zig-zag but with another manoeuvre.
+/// Warning of a log without a recognised zig-zag but with a straight piece; `None` without such a piece.
 fn unrecognised(manoeuvres: &[DetectedManoeuvre], file: &str) -> Option<Warning> {
     let has_straight = manoeuvres.iter().any(|entry| entry.manoeuvre.is_none());
     let text = format!(

@@ -28,7 +28,7 @@ enum Numbers {
     Parts(f64),
     /// Counts of a converter: the count at zero.
     Counts(f64),
-    /// Neither of them.
+    /// Neither parts of a degree nor counts.
     NoAngle,
 }
 

@@ -65,7 +65,7 @@ pub enum Problem {
     /// UTF-16, which some spreadsheets call "Unicode text".
     #[error("line 1 starts with the mark of UTF-16 text; save the file as CSV in UTF-8")]
     Utf16,
-    /// Not UTF-8.
+    /// Bytes that are not UTF-8.
     #[error(
         "line {line} holds the byte 0x{byte:02x}, which is not UTF-8; save the file as UTF-8, or write `encoding = \
          \"windows-1252\"` under [table] in a sidecar NAME.trial.toml"
@@ -161,7 +161,7 @@ pub enum Problem {
         is_angle(quantity)
     )]
     NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
-    /// Milliseconds under a name in seconds.
+    /// Milliseconds or microseconds since 1970 under a name in seconds.
     #[error(
         "line {line}: the time `{column}` begins at {first}, which is after the year 2100 in seconds, and a present date in \
          {unit}; name it t_{unit}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_{unit}\""

@@ -26,7 +26,7 @@ type NumberedLine = (usize, String);
 pub(super) struct Head {
     /// Names of the columns.
     pub names: Vec<String>,
-    /// Units below the names, if a row contains them.
+    /// Units in the row below the names; empty without such a row.
     units: Vec<Option<Unit>>,
     /// Line of the names.
     pub line: usize,
@@ -39,7 +39,7 @@ pub(super) struct Head {
 }
 
 impl Head {
-    /// Unit below the name of a column.
+    /// Unit in the row below the name of a column; `None` if there is none for it.
     pub fn unit(&self, index: usize) -> Option<Unit> {
         self.units.get(index).copied().flatten()
     }

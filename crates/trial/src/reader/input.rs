@@ -22,7 +22,7 @@ const HEAD_LINES: usize = 60;
 /// Text of a file, from its first byte on.
 pub(super) struct Text<'a> {
     pub bytes: Box<dyn Read + 'a>,
-    /// Hash of the file, if it differs from the hash of the text.
+    /// Hash of the file; `None` if it is the hash of the text.
     pub on_disk: Option<RunningHash>,
     /// `true` for a text that was generated here from a binary table.
     pub is_generated: bool,
@@ -52,7 +52,8 @@ pub(super) fn stem(path: &Path) -> String {
     inner.file_stem().map_or_else(|| "record".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// Opens a file and recognises its content; with its size in bytes if that is the length of its text.
+/// Opens a file and recognises its content. The size (bytes) is `None` for a pipe, and if the text has another length
+/// than the file.
 pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD_FILE)?;
     let (size, content) = (file.size, detect_content(Box::new(file))?);

@@ -39,7 +39,8 @@ pub struct ChannelInspection {
     pub readings: ChannelReadings,
     /// `true` if positive values turn the ship to starboard; `None` if the log does not determine it.
     pub to_starboard: Option<bool>,
-    /// Relation of the yaw rate to the heading, or of the rudder to its order.
+    /// Relation of the yaw rate to the heading, or of the rudder to its order; `None` for other channels, and if the
+    /// reference explains too little.
     pub relation: Option<ChannelRelation>,
 }
 
@@ -72,8 +73,8 @@ impl Log {
         slope.filter(|slope| slope.share >= MIN_SHARE).map(|slope| slope.value > 0.0)
     }
 
-    /// Relation of a transformed channel x to a reference y: y = c₀ + c₁ t + s x(t + lag), with the lag that explains
-    /// maximum explained share.
+    /// Relation of a transformed channel x to a reference y: y = c₀ + c₁ t + s x(t + lag), with the lag that gives the
+    /// maximum explained share. `None` without one of the channels, and if that share is below [`MIN_SHARE`].
     fn relation(
         &self,
         [channel, reference]: [Channel; 2],

@@ -64,15 +64,17 @@ pub(super) struct RawColumn {
     pub content: Content,
     /// `true` for a column without a unit; until the unit is determined, values are in the unit of written files.
     pub open: bool,
+    /// Meaning with its certainty; `None` for an unknown or omitted column.
     claim: Option<(ColumnMeaning, Rank)>,
+    /// Factor of the numbers declared by the sidecar, else 1.
     scale: f64,
     /// Number in the file at a value of zero.
     pub zero: f64,
-    /// Last number, as in the file.
+    /// Last number, as in the file; `None` before the first.
     pub last: Option<f64>,
-    /// Maximum absolute number.
+    /// Maximum magnitude of the numbers less `zero`, times `scale`.
     pub largest: f64,
-    /// Maximum step between two numbers.
+    /// Maximum step between two successive numbers, as in the file.
     pub largest_step: f64,
     /// `true` if all numbers so far are whole.
     pub is_whole: bool,
@@ -171,22 +173,22 @@ impl Layout {
         self.columns.iter().position(|column| wanted(column.content))
     }
 
-    /// Column of the rudder: the angle, or the order without an angle.
+    /// Index of the column of the rudder angle or, without one, of the rudder order; `None` without either.
     pub fn rudder_column(&self) -> Option<usize> {
         self.column_of(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
     }
 
-    /// Column of a channel.
+    /// Index of the column of a channel; `None` without one.
     pub fn column_of(&self, wanted: Channel) -> Option<usize> {
         self.find(|content| matches!(content, Content::Channel(channel, _) if channel == wanted))
     }
 
-    /// Column of time.
+    /// Index of the column of time; `None` without one.
     pub fn time_column(&self) -> Option<usize> {
         self.find(|content| matches!(content, Content::Time(_) | Content::Stamp))
     }
 
-    /// Column of the dates that belong to times of day.
+    /// Index of the column of the dates that belong to times of day; `None` without one.
     pub fn date_column(&self) -> Option<usize> {
         self.find(|content| content == Content::Date)
     }
@@ -243,7 +245,7 @@ impl Layout {
         Ok(())
     }
 
-    /// Assigns to every channel the column of the highest rank.
+    /// Assigns to every channel the column whose meaning is the most certain.
     fn settle_channels(&mut self) -> Result<(), Problem> {
         for channel in Channel::ALL {
             let claim = |(index, column): (usize, &RawColumn)| match column.claim? {
@@ -369,7 +371,8 @@ impl Layout {
     }
 }
 
-/// Meaning of a name with its certainty; a name without a unit has the unit below it.
+/// Meaning of a name with its certainty; a name without a unit has the unit `below` it. `None` for an unknown name, and
+/// for a unit that the quantity cannot have.
 fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
     let named = column_meaning(name)?;
     let rank = if quantity_unit_meaning(name).is_some() { Rank::Contract } else { Rank::Usual };

@@ -157,7 +157,7 @@ impl<R: Read> Lines<R> {
     }
 }
 
-/// SHA-256 of a text, hexadecimal.
+/// SHA-256 of some bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
     RunningHash::from_bytes(bytes).finish()
 }

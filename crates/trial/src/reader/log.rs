@@ -108,7 +108,7 @@ impl Log {
         Ok(log)
     }
 
-    /// Readings of every channel before other files are joined, on the clock of this log.
+    /// Readings of every channel before other files are joined, each with its shift (s) to the clock of this log.
     fn take_readings(&mut self) -> Vec<(Series, f64)> {
         if let Readings::Series(series) = std::mem::take(&mut self.readings) {
             return series;
@@ -205,13 +205,13 @@ impl Log {
         self.clock?.date_at(*self.time().first()?)
     }
 
-    /// Channel, row by row, if present; SI units and radians.
+    /// Channel, row by row, in SI units and radians; `None` if it is absent.
     pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
         self.columns.channels.get(&channel).map(Vec::as_slice)
     }
 
     /// `true` if the sidecar declares a part.
-    pub fn has_declared_part(&self) -> bool {
+    pub fn has_declared_interval(&self) -> bool {
         let part = self.sidecar.used_interval();
         part.start().is_finite() || part.end().is_finite()
     }

@@ -24,10 +24,10 @@ use canboat::Canboat;
 use message::Message;
 use table::LongTable;
 
-/// Maximum share of a sparse source among the readings of the busiest source.
+/// Maximum number of readings of a sparse source, as a share of the readings of the busiest source.
 const SPARSE_SHARE: f64 = 0.2;
 
-/// Maximum rudder and maximum heading of a log in radians, if no line states the unit.
+/// Maximum rudder angle and maximum heading of a log in radians if no line states the unit, rad.
 const MAX_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
 pub(super) use can::{is_log as is_can_log, is_python_can};
@@ -176,7 +176,8 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
     Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
 }
 
-/// Converts angles to radians: canboat writes degrees, with an option radians.
+/// Converts angles to radians: canboat writes degrees, or radians with an option. If no line states the unit (`is_si`
+/// is `None`), the maximum rudder and heading determine it; this decision is returned as a warning.
 fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
     let largest = |channel: Channel| {
         let signal = series.iter().find(|signal| signal.channel == channel);
@@ -193,7 +194,7 @@ fn in_radians(series: &mut [Series], is_si: Option<bool>) -> Option<Warning> {
     })
 }
 
-/// Shifts times so that the first instant is 0.
+/// Shifts times so that the first instant is 0, and returns the clock at that instant.
 fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     let first = series.iter().filter_map(|signal| signal.time.first()).copied().fold(f64::INFINITY, f64::min);
     let rounded = |time: f64| (time * 1e6).round() / 1e6;

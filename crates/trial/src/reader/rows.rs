@@ -33,13 +33,13 @@ pub(super) struct Counts {
 /// State of the last rows, to distinguish a single stray time from a clock that restarts.
 #[derive(Debug, Default)]
 struct Before {
-    /// Last row with a time, as read.
+    /// Time (s) and values of the last row with a time, as read; `None` before the first such row.
     last: Option<(f64, Vec<f64>)>,
-    /// Time of the row before the last one.
+    /// Time of the row before the last one, s; `None` if there was a single row.
     earlier: Option<f64>,
     /// `true` if the last row was kept.
     kept: bool,
-    /// Line and time of a row omitted because its time is before the last time.
+    /// Line and time (s) of a row omitted because its time is before the last time; `None` after a row in order.
     stray: Option<(usize, f64)>,
 }
 
@@ -68,7 +68,7 @@ pub(super) struct Rows<'a> {
     last_heading: Option<f64>,
     /// Number of rows of the part with time and one of the wanted channels.
     pub(super) usable_rows: usize,
-    /// First and last time in the file.
+    /// First and last time in the file, s; `None` before the first.
     pub(super) span: Option<(f64, f64)>,
     pub(super) counts: Counts,
 }
@@ -203,7 +203,7 @@ impl<'a> Rows<'a> {
         })
     }
 
-    /// Cells to numbers in SI units, into `self.row`.
+    /// Converts the cells of a row to numbers in SI units, into `self.row`.
     fn parse(&mut self, line: &str, number: usize) -> Result<(), Problem> {
         let (cells, expected) = (self.cells.len(), self.layout.cells);
         let surplus = self.cells.get(expected..).is_some_and(|extra| extra.iter().any(|cell| !cell.is_empty()));
@@ -275,8 +275,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// `true` for a row later than the last one. An exact copy of the last row and a single row with a stray
-    /// time give `false`. Fails if time continues from an earlier time.
+    /// `true` for a row later than the last one, or with the same stamp of whole seconds. An exact copy of the last row
+    /// and a single row with a stray time give `false`. Fails if time continues from an earlier time.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;
         let Some((last, row)) = &mut self.before.last else {
@@ -330,7 +330,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// Sign of a word for a side, negative for port.
+/// Sign of a word for a side, negative for port; `None` for any other text.
 fn side_word(text: &str) -> Option<f64> {
     const PORT: [&str; 8] = ["p", "port", "l", "left", "bb", "backbord", "babord", "bâbord"];
     const STARBOARD: [&str; 10] =
@@ -340,7 +340,8 @@ fn side_word(text: &str) -> Option<f64> {
     if is_side(&PORT) { Some(-1.0) } else { is_side(&STARBOARD).then_some(1.0) }
 }
 
-/// Rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).
+/// Rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign of degrees
+/// (`10.5°`), in the unit of the cell; `None` for any other text.
 fn side(text: &str, channel: Option<Channel>, separator: Separator) -> Option<f64> {
     let plain = text.trim_end_matches(['°', 'º']).trim();
     let (mut number, mut sign) = (plain, 1.0);

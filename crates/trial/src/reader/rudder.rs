@@ -1,5 +1,5 @@
-//! Corrections of the rudder before it enters a record: a rudder written on change holds its value, and a
-//! sidecar may declare a delay of the rudder, or the column as an order.
+//! Corrections of the rudder before it enters a record: the gaps of a rudder that the logger writes only when it
+//! changes are filled, and a sidecar may declare a delay of the rudder, or the column as an order.
 
 use document::{Warning, WarningCode};
 use estimation::statistics::median;
@@ -10,21 +10,22 @@ use super::source::Series;
 use crate::channel::Channel;
 use crate::record::Columns;
 
-/// Minimum number of readings and of long rests of a rudder written on change, and minimum length of a long rest in
-/// usual intervals.
+/// Limits for a rudder that the logger writes only when it changes: minimum number of readings, minimum number of long
+/// gaps, and minimum length of a long gap in usual intervals.
 const ON_CHANGE: (usize, usize, f64) = (20, 2, 5.0);
 
-/// Minimum change of a rudder written on change, as a share of its median change; noise has smaller changes.
+/// Minimum change of such a rudder, except in one of twenty intervals, as a share of its median change; noise has
+/// smaller changes.
 const MIN_CHANGE_SHARE: f64 = 0.3;
 
-/// Maximum number of readings added in a rest.
+/// Maximum number of readings added in a gap.
 const MAX_HELD_READINGS: f64 = 1000.0;
 
-/// Holds the value of a rudder written on change between two readings, at the usual interval. `None` for a rudder that
-/// is not written on change.
+/// Fills the gaps of a rudder that the logger writes only when it changes: the last value is repeated at the usual
+/// sampling period. Returns a warning; `None`, and no change, for any other rudder.
 ///
-/// In a rudder written on change no reading repeats the previous one, and over a long rest the rudder moves no
-/// further than between two rows of a movement.
+/// A rudder is taken as written in this way if no reading repeats the previous one, if few changes are much smaller
+/// than the others, and if no change over a long gap exceeds twice the maximum change over a shorter interval.
 pub(super) fn repeat_held_rudder(columns: &mut Columns) -> Option<Warning> {
     let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|x| columns.channels.contains_key(x))?;
     let values = &columns.channels[&channel];

@@ -25,7 +25,7 @@ pub(super) struct Series {
     pub time: Vec<f64>,
     /// Values; NaN for a missing reading. Headings are not unwrapped.
     pub values: Vec<f64>,
-    /// Name of the column or instrument.
+    /// Name of the column or instrument; `None` if it is unknown.
     pub source: Option<String>,
 }
 
@@ -46,13 +46,14 @@ pub(super) enum Readings {
 pub struct Log {
     pub(super) path: PathBuf,
     pub(super) columns: Columns,
-    /// Clock at time 0, if the files have stamps.
+    /// Clock at time 0; `None` if the files state neither date nor time of day.
     pub clock: Option<Clock>,
     /// SHA-256 of the bytes, hexadecimal.
     pub(super) sha256: String,
     /// Number of rows or lines of the files.
     pub(super) rows: usize,
     pub(super) sidecar: Sidecar,
+    /// First and last time of a selected part, s; `None` for the whole log.
     pub(super) part: Option<[f64; 2]>,
     /// Decisions and remarks of the reader.
     pub warnings: Vec<Warning>,
@@ -73,15 +74,15 @@ pub struct ChannelReadings {
     pub source: Option<String>,
     /// Number of readings.
     pub count: usize,
-    /// Median interval between readings, s.
+    /// Median interval between readings, s; `None` for fewer than two readings.
     pub interval: Option<f64>,
-    /// Beginning and length of the maximum gap between readings, s.
+    /// Beginning and length of the maximum gap between readings, s; `None` for fewer than two readings.
     pub longest: Option<[f64; 2]>,
     /// Minimum and maximum reading.
     pub range: [f64; 2],
-    /// Minimum change between two readings.
+    /// Minimum change between two successive readings, without repetitions; `None` for a constant channel.
     pub step: Option<f64>,
-    /// Number of times a heading crosses north.
+    /// Number of times that a heading crosses north; `None` for any other channel.
     pub wraps: Option<usize>,
 }
 
@@ -140,7 +141,7 @@ impl Log {
         all.collect()
     }
 
-    /// Name of the column of a channel.
+    /// Name of the column of a channel; `None` for a derived channel and for an instrument.
     pub(super) fn column_name(&self, channel: Channel) -> Option<String> {
         self.names.iter().find(|(named, _)| *named == channel).map(|(_, name)| name.clone())
     }

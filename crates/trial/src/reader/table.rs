@@ -66,7 +66,7 @@ pub(super) fn read(
 }
 
 impl Rows<'_> {
-    /// Columns of all rows kept; `skipped` lines were before the names.
+    /// Log with the columns of all rows kept; `skipped` lines were before the names.
     fn finish(mut self, skipped: usize) -> Result<Log, Problem> {
         let line = self.layout.line;
         if self.counts.rows == 0 {

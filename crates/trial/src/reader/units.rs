@@ -16,7 +16,7 @@ use crate::wording::shortened;
 /// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
 const MAX_RUDDER_RAD: f64 = 0.8;
 
-/// Minimum number of a rudder in degrees: 90° in radians.
+/// Number that a rudder in degrees exceeds at least once: as radians it would be more than 90°.
 const MIN_RUDDER_DEG: f64 = 1.6;
 
 /// Bounds of the ratio of heading range to rudder range in a zig-zag: a factor of 56 apart, less than the
@@ -64,7 +64,7 @@ pub(super) fn infer_units(
 ) -> Result<Vec<Warning>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    // The unit of the heading requires the unit of the rudder, and the yaw rate requires both.
+    // The unit of the heading follows from the rudder, and the unit of the yaw rate from the heading.
     const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
     open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
     let (time, channels) = (&log.columns.time, &mut log.columns.channels);
@@ -136,7 +136,8 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     }
 }
 
-/// Unit of a heading that was read as degrees; a heading in radians is unwrapped at 2π.
+/// Unit of a heading that was read as degrees; `None` if both degrees and radians are possible, or neither. A heading
+/// in radians is unwrapped at 2π.
 fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.si_factor();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
@@ -166,7 +167,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     }
 }
 
-/// Unit of a yaw rate that was read as deg/s, from the heading.
+/// Unit of a yaw rate that was read as deg/s, from the heading; `None` without a heading, and if no unit fits.
 fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (heading, rate) = (channels.get(&Channel::Heading)?, channels.get(&Channel::YawRate)?);
     let (mut last, mut integral) = (None, 0.0);
@@ -192,7 +193,7 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     Channel::YawRate.units().iter().find(near).copied()
 }
 
-/// Unit of a speed that was read as m/s, from the positions.
+/// Unit of a speed that was read as m/s, from the positions; `None` without positions, and if no unit fits.
 fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (north, east) = (channels.get(&Channel::North)?, channels.get(&Channel::East)?);
     let values: Vec<f64> = channels.get(&Channel::Speed)?.iter().copied().filter(|speed| speed.is_finite()).collect();
@@ -203,6 +204,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
 }
 
 /// Determines the unit of a time without one: a count since 1970 or 1899, or seconds if ships can turn at such rates.
+/// Returns the text of the warning; fails if the unit cannot be seconds.
 fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let name = shortened(name);
     let times = &mut log.columns.time;

@@ -35,7 +35,7 @@ pub(super) struct RecordedRudder {
     pub rows: Polyline,
     /// Corners between the rows.
     pub corners: Vec<Corner>,
-    /// Rows and corners together, if there are corners.
+    /// Rows and corners together; `None` without corners.
     path: Option<Polyline>,
 }
 
@@ -53,7 +53,7 @@ impl RecordedRudder {
     }
 }
 
-/// Rows with the corners between them.
+/// Rows with the corners between them; `None` if a corner is not between its rows.
 fn through(rows: &Polyline, corners: &[Corner]) -> Option<Polyline> {
     let points = rows.times().len() + corners.len();
     let (mut time, mut angle) = (Vec::with_capacity(points), Vec::with_capacity(points));
@@ -72,7 +72,7 @@ fn through(rows: &Polyline, corners: &[Corner]) -> Option<Polyline> {
 /// Movement of the rudder in an interval between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Piece {
-    /// Constant rate, rad/s: −r, 0 or +r of the gear.
+    /// Constant rate, rad/s: 0, or that of the gear to either side.
     Straight(f64),
     /// A corner lies in the interval.
     Bent,
@@ -80,8 +80,8 @@ enum Piece {
 
 /// Corners of a rudder that rests or moves at the rate of the gear, in the order of time.
 ///
-/// δ(t) = δ_i + ṙ₁ (t − t_i) before the corner and δ_(i+1) − ṙ₂ (t_(i+1) − t) after it, with ṙ₁ and ṙ₂ are the rates
-/// of the neighbouring intervals; if a neighbour is bent itself, the rudder moves in it at the rate of the gear.
+/// δ(t) = δ_i + δ̇₁ (t − t_i) before the corner and δ_(i+1) − δ̇₂ (t_(i+1) − t) after it, where δ̇₁ and δ̇₂ are the
+/// rates of the neighbouring intervals; if a neighbour is bent itself, the rudder moves in it at the rate of the gear.
 /// Empty if the rudder has no constant rate: noise, whole degrees, another kind of steering. A stroke that begins
 /// and ends between the same two rows is not detected.
 fn corners(rudder: &Polyline) -> Vec<Corner> {

@@ -5,8 +5,8 @@ use crate::channel::Channel;
 
 /// Relative wind: speed, m/s, and the direction from which it comes, clockwise from the bow, rad, −π to π.
 ///
-/// The true wind blows at `speed` (m/s) from `from` (rad, clockwise from north); the ship makes `ahead` (m/s). The
-/// drift angle is neglected.
+/// The true wind blows at `speed` (m/s) from `from` (rad, clockwise from north); the ship makes `ahead` (m/s) on
+/// `heading` (rad). The drift angle is neglected.
 pub fn relative_wind(speed: f64, from: f64, ahead: f64, heading: f64) -> (f64, f64) {
     let (side, bow) = (from - heading).sin_cos();
     let (bow, side) = (speed * bow + ahead, speed * side);
@@ -15,7 +15,7 @@ pub fn relative_wind(speed: f64, from: f64, ahead: f64, heading: f64) -> (f64, f
 
 impl Trial {
     /// Relative wind of every row: speed, m/s, and the direction from which it comes, clockwise from the bow, rad:
-    /// measured, else from the true wind and the speed of the ship.
+    /// measured, else from the true wind and the speed of the ship. `None` if these were not recorded either.
     pub fn relative_wind(&self) -> Option<[Vec<f64>; 2]> {
         let measured = [Channel::WindRelativeSpeed, Channel::WindRelativeFrom].map(|channel| self.channel(channel));
         if let [Some(speed), Some(from)] = measured {
@@ -30,7 +30,7 @@ impl Trial {
     }
 
     /// Mean true wind: root mean square speed, m/s, and mean direction from which it comes, clockwise from north, rad.
-    /// `None` without the relative wind and the speed of the ship.
+    /// `None` unless both the relative wind and the speed of the ship are known.
     pub fn mean_wind(&self) -> Option<[f64; 2]> {
         let ([speed, from], ship) = (self.relative_wind()?, self.channel(Channel::Speed)?);
         let to_north_and_east = |row: usize| {

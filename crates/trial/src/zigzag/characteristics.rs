@@ -189,8 +189,8 @@ fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
     execute.time.value - heading.half_width >= heading.time[0]
 }
 
-/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` if the standard deviation of
-/// the rate exceeds `precise`.
+/// Relative heading (rad) and yaw rate (rad/s) at a time by a polynomial with `N` coefficients; `None` if headings are
+/// missing, or the standard deviation of the rate exceeds `precise` (rad/s).
 fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
     let fit = LocalPolynomial::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width)?;
     (fit.slope_gain(time) * heading.noise_sd.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
@@ -215,7 +215,8 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
 /// Nominal pair from the held rudder and the headings at the reversals; the helm is late rather than early.
 ///
 /// Headings are relative to the middle course: it is less noisy than the first heading of a record, and valid if
-/// the approach was not on the course of the trial.
+/// the approach was not on the course of the trial. `None` if they differ by more than half their median, or if no
+/// conventional angle is near.
 fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<NominalAngles> {
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();
@@ -255,14 +256,15 @@ fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &H
         .collect()
 }
 
-/// Time at which the heading passes a level that is itself uncertain.
+/// Time, s, at which the heading passes a level that is itself uncertain; `None` if the record does not contain it.
 fn crossing(heading: &Heading, level: f64, level_sd: Option<f64>, side: Side, from: f64, to: f64) -> Option<Quantity> {
     let time = heading.crossing(level, side.sign(), from, to)?;
     let rate = heading.rate_at(time.value)?;
     Some(time.widened(level_sd.map(|sd| sd / rate.value.abs())))
 }
 
-/// Distance travelled between two times, m: trapezoid integral of the speed over the rows with a speed.
+/// Distance travelled between two times, m: trapezoid integral of the speed over the rows with a speed. `None` unless
+/// these rows include both times.
 fn distance(trial: &Trial, from: f64, to: f64) -> Option<f64> {
     let speed = trial.channel(Channel::Speed)?;
     let rows: Vec<(f64, f64)> =

@@ -139,8 +139,8 @@ impl<'a> RudderMovements<'a> {
         (0..to.first).rev().find(|&row| progress(self.angle[row], before, to.level) <= 0.1).unwrap_or(0)
     }
 
-    /// Time of the movement from `before` into a hold: the intersection of the line through its ramp with the level
-    /// before.
+    /// Movement from a level into a hold. It starts at the intersection of the line through its ramp with the level, as
+    /// far as the sampling resolves the ramp.
     fn movement(&self, level: Level, to: &Hold) -> Movement {
         let before = level.angle;
         let foot = self.foot(before, to);
@@ -185,8 +185,8 @@ impl<'a> RudderMovements<'a> {
         Movement { start, before, after: to.level, foot, rate, least_rate }
     }
 
-    /// Least-squares line through the rows of a ramp: the time at which it leaves `before`, with its rate (rad/s,
-    /// signed).
+    /// Least-squares line through the rows of a ramp: the time at which it leaves `level`, and its rate (rad/s,
+    /// signed). `None` if the line runs against `direction`.
     ///
     /// A steering gear has a constant rate. A ramp whose rate agrees with the common rate within its uncertainty takes
     /// the common rate: a short ramp in whole degrees is then timed far better.
@@ -218,8 +218,8 @@ pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
     time.partition_point(|&t| t <= time[row] - by).saturating_sub(1).min(row)
 }
 
-/// Step of a rounded channel: the minimum distance between two of its values. Close to zero for a channel that is not
-/// rounded.
+/// Step of a rounded channel, in its unit: the minimum distance between two of its values. Close to zero for a channel
+/// that is not rounded.
 pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);

@@ -110,7 +110,7 @@ pub struct BaseCourse {
     pub source: BaseCourseSource,
 }
 
-/// Execute: a movement of the rudder from its angle, or from amidships, to the opposite side.
+/// Execute: a movement of the rudder from one side to the other, or the first from amidships to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Execute {
     /// Time at which the rudder starts to move, s, on the clock of the record.
@@ -209,7 +209,7 @@ impl ZigZag {
         (rate.value.abs() <= limit).then_some(rate)
     }
 
-    /// Yaw rate at the first execute after a recorded straight approach, rad/s.
+    /// Yaw rate at the first execute after a recorded straight approach, rad/s; `None` without such an approach.
     pub fn approach_yaw_rate(&self) -> Option<Quantity> {
         self.straight_yaw_rate().filter(|_| self.base_course.source == BaseCourseSource::Approach)
     }
@@ -240,7 +240,7 @@ impl ZigZag {
     }
 }
 
-/// Mean time between executes to the same side, of those that reverse the rudder.
+/// Mean time between executes to the same side, s, of those that reverse the rudder; `None` without a complete cycle.
 pub(super) fn period(executes: &[Execute], from_first_execute: bool) -> Option<Quantity> {
     let reversals = executes.get(usize::from(from_first_execute)..)?;
     let cycles = reversals.len().checked_sub(2).filter(|&cycles| cycles > 0)?;

@@ -55,11 +55,13 @@ pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
 /// Observed headings of a record, relative to the first heading, so that a large heading does not cost digits.
 #[derive(Debug, Clone)]
 pub(super) struct Heading {
+    /// Times, s.
     pub time: Vec<f64>,
+    /// Headings less the first heading, rad.
     pub relative: Vec<f64>,
     /// Heading at a relative heading of zero, rad.
     pub origin: f64,
-    /// Standard deviation of the noise, rad.
+    /// Standard deviation of the noise, rad; `None` if it is neither declared nor can be estimated.
     pub noise_sd: Option<f64>,
     /// Half-width of local fits for values, s.
     pub half_width: f64,
@@ -119,7 +121,8 @@ impl Heading {
         Some(self.local(t, self.slope_half_width())?.slope_at(t, self.noise_sd))
     }
 
-    /// Maximum |yaw rate| between two times, at the rows whose fit has samples on both sides.
+    /// Maximum |yaw rate| between two times, rad/s, at the rows whose fit has samples on both sides; `None` without
+    /// such rows.
     ///
     /// The maximum of many noisy slopes is biased upwards by about one standard deviation.
     pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
@@ -133,7 +136,7 @@ impl Heading {
             .max_by(|a, b| a.value.total_cmp(&b.value))
     }
 
-    /// Time and heading of the peak towards `side` (+1 or −1) between two times.
+    /// Time (s) and relative heading (rad) of the peak towards `side` (+1 or −1) between two times.
     ///
     /// `None` if the record does not contain the peak: the heading has its maximum at the end of the span, or nearer to
     /// it than half a fit, or next to a gap longer than a fit.
@@ -164,8 +167,8 @@ impl Heading {
         self.time[around].windows(2).any(|pair| pair[1] - pair[0] > self.max_step)
     }
 
-    /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1
-    /// falling).
+    /// First time between two times at which the relative heading passes `level` (rad) in the direction `side` (+1
+    /// rising, −1 falling); `None` if it does not.
     ///
     /// Standard deviation: error of the heading over the slope.
     pub fn crossing(&self, level: f64, side: f64, from: f64, to: f64) -> Option<Quantity> {

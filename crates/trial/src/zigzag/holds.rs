@@ -96,7 +96,7 @@ fn level(rudder: &[f64], side: f64) -> f64 {
 /// whole degree.
 ///
 /// `below` and `above` are tolerances of the measured angle as shares of the conventional angle; `slack_deg` is added
-/// for the noise of the measurement.
+/// for the noise of the measurement. `None` for an angle that rounds to zero.
 pub fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
     const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
     // Small angles have an absolute error (a rudder offset, a late helm), hence a minimum tolerance.

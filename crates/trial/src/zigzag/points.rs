@@ -2,7 +2,7 @@
 //! identification of K and T. The rudder is not used.
 //!
 //! Source of the procedure: Nomoto (1960), Analysis of Kempf's standard maneuver test and proposed steering quality
-//! indices, DTMB Report 1461, re-derived for this project. The parabola at an extremum has a known small bias, because
+//! indices, DTMB Report 1461, derived anew here. The parabola at an extremum has a known small bias, because
 //! the turning rate of a ship does not change uniformly through a peak.
 
 use super::local::{Cubic, Parabola};
@@ -65,7 +65,7 @@ pub fn zero_crossings(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f6
     passages(time, heading).into_iter().filter_map(crossing).collect()
 }
 
-/// Changes of sign of the heading, close ones merged: time (s), and +1 for a passage to starboard.
+/// Changes of sign of the heading, close ones merged: time (s), and +1 for a passage to starboard, −1 to port.
 fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
     // Crossings within a twelfth of the period are merged: 10 s for a ship with a period of 120 s.
     let mut halves: Vec<f64> = departure_times(time, heading).windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -81,7 +81,7 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
         }
         last = Some((t, psi));
     }
-    // A cluster with an even number of changes ends on the side it began: no passage, only noise about zero.
+    // A cluster with an even number of changes ends on the side on which it began: noise about zero, and no passage.
     changes
         .chunk_by(|a, b| b.0 - a.0 < merge)
         .filter(|cluster| cluster.len() % 2 == 1)

@@ -1,6 +1,6 @@
 //! Expected values and ranges of the constants, written after a formula.
 
-/// Expectation of a constant: an expected value, and a range.
+/// Expectation of a constant: the expected value `about` and the range `ends`, each `None` if it is not given.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Expectation {
     pub(super) about: Option<f64>,

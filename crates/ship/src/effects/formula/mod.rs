@@ -64,7 +64,7 @@ pub(super) struct ListedFormula {
     /// [`EffectTarget::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTarget::MOMENT`] for a yaw
     /// acceleration, rad/s²: `K_over_T` times the moment as equivalent rudder angle.
     pub(super) acts_on: EffectTarget,
-    /// Formula; [`parse`] has the language.
+    /// Text of the formula, in the language of [`parse`].
     pub(super) formula: &'static str,
     /// Prior of every constant.
     pub(super) prior: ListedPrior,
@@ -72,7 +72,7 @@ pub(super) struct ListedFormula {
     pub(super) is_weather: bool,
 }
 
-/// Prior of the constants in given records: mean, standard deviation and maximum.
+/// Prior of the constants in given records: mean, standard deviation and maximum; `None` without a required channel.
 pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 
 /// Effect defined by a formula.
@@ -86,10 +86,10 @@ pub struct Formula {
     of_record: RecordConstants,
     /// Row of the list; `None` for the formula of a user.
     listed: Option<ListedFormula>,
-    /// Expectations of the constants of a user's formula.
+    /// Expectations of the constants of a user's formula; empty for a formula of the list.
     expected: Vec<Expectation>,
-    /// For every constant, `true` for a size: the moment is proportional to it, and absent if all sizes are zero.
-    /// Constants that are not sizes are shapes.
+    /// For every constant, `true` for a size (an amplitude): the moment is a linear function of it, and absent if all
+    /// sizes are zero. Constants that are not sizes are shapes. Empty for a formula of the list.
     is_size: Vec<bool>,
 }
 
@@ -209,7 +209,7 @@ impl Formula {
         formula
     }
 
-    /// `true` if the formula is zero or constant in a signal for ships without a measured channel.
+    /// `true` if, without this measured channel, the formula is zero or one of its signals is constant.
     pub fn is_inactive_without(&self, channel: Regressor) -> bool {
         self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
     }
@@ -290,7 +290,8 @@ impl Effect for Formula {
         self.listed.is_some_and(|row| row.is_weather)
     }
 
-    /// `false`: the lateral way is relative to the initial course, so it does not depend on the absolute heading.
+    /// `true` with the signal `psi`; the lateral way is relative to the initial course, so it does not depend on the
+    /// absolute heading.
     fn is_heading_dependent(&self) -> bool {
         self.has(FormulaSignal::Heading)
     }

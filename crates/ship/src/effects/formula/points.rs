@@ -3,7 +3,7 @@
 use super::program::FormulaSignal;
 use crate::effects::effect::RecordScales;
 
-/// Scales of the signals of a formula in given records.
+/// Scales of the signals of a formula in given records, in SI units and radians.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalScales {
     yaw_rate: f64,
@@ -58,9 +58,10 @@ pub(super) fn way_speed(records: &RecordScales) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SignalPoint {
     pub(super) scales: SignalScales,
-    /// Values from −1 to 1 of yaw rate, rudder, heading, sway, direction of the wind, lateral way.
+    /// Values from −1 to 1, relative to their scales, of yaw rate, rudder, heading, sway, direction of the wind,
+    /// lateral way.
     pub(super) signed: [f64; 6],
-    /// Values from 0.5 to 1 of speed, propeller, time, speed of the wind.
+    /// Values from 0.5 to 1, relative to their scales, of speed, propeller, time, speed of the wind.
     pub(super) positive: [f64; 4],
     /// Number of time units in a second, and of length units in a metre.
     pub(super) second: f64,

@@ -51,7 +51,7 @@ pub enum FormulaSignal {
     KOverT,
 }
 
-/// Record constants of a formula: the signal that uses it, its neutral value and its dimension.
+/// Record constants of a formula, each with the signal that uses it, its neutral value and its dimension.
 pub(super) const RECORD_CONSTANTS: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
     (FormulaSignal::Start, 0.0, [1, 0]),

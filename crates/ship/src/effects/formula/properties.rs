@@ -24,7 +24,8 @@ impl Formula {
         self.value_at(constants, point) / point.signal(FormulaSignal::KOverT)
     }
 
-    /// For every constant, `true` if it is a size: the moment is proportional to it.
+    /// `true` for every constant that is a size (an amplitude): the moment is a linear function of it, c₀ + c₁ x, at
+    /// all sample points. In the order of the constants.
     pub(super) fn amplitude_flags(&self) -> Vec<bool> {
         let count = self.program.constants.len();
         let is_size = |index: usize| {
@@ -42,7 +43,7 @@ impl Formula {
         (0..count).map(is_size).collect()
     }
 
-    /// `true` if the moment vanishes if all sizes are zero.
+    /// `true` if the formula has sizes and the moment vanishes at all sample points when all sizes are zero.
     pub(super) fn can_be_absent(&self) -> bool {
         let ones = SignalScales::ones();
         let absent = self.with_size(None, &self.shapes(&ones));
@@ -103,8 +104,8 @@ impl Formula {
             .unwrap_or(MirrorSymmetry::Neither)
     }
 
-    /// Dimensions of the constants that follow from the signals, given that the result is an angle. Unknown for several
-    /// shapes.
+    /// Dimension of every constant that follows from the signals, given that the result is an angle; `None` with
+    /// several shapes, or if no integer powers of second and metre are consistent.
     fn units(&self, shapes: &[f64]) -> Vec<Option<Dimension>> {
         const POWERS: std::ops::RangeInclusive<i32> = -3..=3;
         let mut candidates: Vec<Dimension> =
@@ -123,7 +124,7 @@ impl Formula {
         (0..shapes.len()).map(|place| consistent.as_ref().map(|all| all[place])).collect()
     }
 
-    /// Dimension of a size, given the dimension of the shapes; `None` if it is no power of second and metre.
+    /// Dimension of a size, given the dimension of the shapes; `None` if it is no integer power of second and metre.
     fn size_dimension(&self, place: usize, shapes: &[f64], of_shapes: Dimension) -> Option<Dimension> {
         let power = |second: f64, metre: f64| {
             let mut ratios = SignalPoint::all(&SignalScales::ones()).filter_map(|point| {
@@ -142,8 +143,8 @@ impl Formula {
         Some([power(2.0, 1.0)?, power(1.0, 2.0)?])
     }
 
-    /// Start values of the constants: for a shape the expected value, else the value at which the moment becomes
-    /// nonlinear.
+    /// Start values of the constants: the expected value; for a shape without one, the value at which the moment
+    /// becomes nonlinear; otherwise 1.
     fn shapes(&self, scales: &SignalScales) -> Vec<f64> {
         let mut values: Vec<f64> = self.expected.iter().map(|constant| constant.about.unwrap_or(1.0)).collect();
         for place in 0..values.len() {
@@ -156,8 +157,8 @@ impl Formula {
                 let moments = SignalPoint::all(scales).map(|point| self.moment(&constants, &point));
                 moments.map(|moment| moment * moment).sum::<f64>().sqrt()
             };
-            // Exponent of the moment as a power of the constant: constant at first, different if the moment becomes
-            // nonlinear.
+            // Exponent of the moment as a power of the constant: it changes where the moment becomes nonlinear in the
+            // constant.
             let slope = |value: f64| (spread(1.1 * value) / spread(value)).ln() / 1.1_f64.ln();
             let first = slope(1e-6);
             let mut ladder = (-24..=24).map(|step| 10f64.powf(f64::from(step) / 4.0));
@@ -170,9 +171,10 @@ impl Formula {
         values
     }
 
-    /// Priors of the constants. A size is normal about zero; its standard deviation is the expected value, else the
-    /// size of a moment of a fifth of the maximum rudder angle. A shape is normal about its expected value, with half
-    /// of that value as standard deviation. `None` if a prior is not finite.
+    /// Priors of the constants. A size is normal about zero; its standard deviation is the magnitude of its expected
+    /// value, or else the value at which the root mean square of the moment is a fifth of the maximum rudder angle. A
+    /// shape is normal about its start value, with half the magnitude of that value as standard deviation. `None` if a
+    /// prior is not finite.
     pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
         let scales = SignalScales::from_records(records);
         let shapes = self.shapes(&scales);

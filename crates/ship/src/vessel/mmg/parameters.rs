@@ -72,7 +72,7 @@ pub enum Wake<R = f64> {
     Gaussian,
 }
 
-/// Propeller at constant revolutions.
+/// Propeller, with its wake, thrust deduction and open-water characteristic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Propeller<R = f64> {
     /// Diameter D_P, m.
@@ -85,7 +85,7 @@ pub struct Propeller<R = f64> {
     pub tP: R,
     /// Longitudinal position x_P' = x_P/L, forward of midship.
     pub xP: R,
-    /// Open-water thrust K_T = k0 + k1 J + k2 J².
+    /// Coefficients k0, k1 and k2 of the open-water thrust K_T = k0 + k1 J + k2 J².
     pub k: [R; 3],
 }
 
@@ -106,9 +106,9 @@ pub struct Rudder<R = f64> {
     pub tR: R,
     /// Rudder force increase a_H.
     pub aH: R,
-    /// Point of application of the additional force x_H' = x_H/L.
+    /// Longitudinal position x_H' = x_H/L of the additional force on the hull, forward of midship.
     pub xH: R,
-    /// Longitudinal position x_R' = x_R/L.
+    /// Longitudinal position x_R' = x_R/L, forward of midship.
     pub xR: R,
     /// Effective position for the inflow ℓ_R' in β_R = β − ℓ_R' r'.
     pub lR: R,
@@ -202,7 +202,7 @@ impl Parameters {
 }
 
 impl<R> Parameters<R> {
-    /// Coefficient with this name in files; `None` if there is none, e.g. for another law of the wake.
+    /// Coefficient with this name in files; `None` for an unknown name or a coefficient of another wake law.
     pub fn coefficient_mut(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;
         Some(match name {

@@ -81,18 +81,18 @@ pub struct PrimeHull<R = f64> {
 /// Nondimensional hull in a calm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CalmHull<R = f64> {
-    /// Quadratic polynomial.
+    /// Values of the quadratic polynomial: the common coefficients, then the further coefficients.
     Quadratic([R; COMMON_TERMS.len() + QUADRATIC_TERMS.len()]),
-    /// Cubic polynomial.
+    /// Values of the cubic polynomial: the common coefficients, then the further coefficients.
     Cubic([R; COMMON_TERMS.len() + CUBIC_TERMS.len()]),
-    /// MMG model, and δ_r.
+    /// MMG model, and δ_r, rad.
     Mmg(Box<Mmg<R>>, R),
 }
 
 impl<R: Real> PrimeHull<R> {
-    /// Accelerations (u', v', r') at surge, sway and yaw rate, rudder (rad), propeller rate over that of the approach
-    /// (`n_ratio`), yaw disturbance as equivalent rudder angle at approach speed (rad), and wind per unit of Y_w
-    /// ([`wind_accelerations`](super::wind_accelerations)).
+    /// Accelerations (u', v', r') at surge, sway and yaw rate, in units of L and U₀; rudder in rad, propeller rate over
+    /// that of the approach (`n_ratio`), yaw disturbance as equivalent rudder angle at approach speed (rad), and wind
+    /// per unit of Y_w ([`wind_accelerations`](super::wind_accelerations)).
     #[inline]
     pub fn accelerations(&self, state: [R; 3], rudder: R, n_ratio: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
         let calm = self.in_calm.accelerations(state, rudder, n_ratio, disturbance);

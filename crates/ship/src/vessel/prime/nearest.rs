@@ -65,8 +65,8 @@ pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]>
     laws(&of_mmg(&prior.parameters)?, &differences)
 }
 
-/// Priors of both polynomials, from the accelerations of the mean hull and their half differences; `None` if a fit
-/// fails.
+/// Priors of both polynomials, from the accelerations of the mean hull and their half differences times f; `None` if a
+/// fit fails.
 fn laws(truth: &DVector<f64>, differences: &DMatrix<f64>) -> Option<[PolynomialLaw; 2]> {
     Some([
         law(CalmHull::<Dual<{ COMMON_TERMS.len() + QUADRATIC_TERMS.len() }>>::Quadratic, truth, differences)?,

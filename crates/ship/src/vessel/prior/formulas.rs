@@ -86,7 +86,8 @@ impl HullDimensions {
         0.5 * self.Cb - 0.05
     }
 
-    /// Ratio of thrust to resistance at an advance ratio of one: R0' J² at K_T = [`SERVICE_THRUST`].
+    /// Resistance coefficient R0' that the thrust balances at an advance ratio of one: R0' J² at K_T =
+    /// [`SERVICE_THRUST`].
     ///
     /// From R0' = (1 − t_P) 2 D_P⁴ n² K_T/(L d U²) with n D_P = U (1 − w_P0)/J.
     fn thrust_at_one(&self) -> f64 {

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::short_number::ShortNumber;
 
-/// Particulars of a ship in SI units; only length and speed are required.
+/// Particulars of a ship in SI units; only length and speed are required, any other is `None` if it is not given.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct HullParticulars {
     /// Length between perpendiculars L, m.
@@ -54,7 +54,7 @@ pub struct Particular {
 }
 
 impl Particular {
-    /// Particular with this key; `None` if there is none.
+    /// Particular with this key; `None` for an unknown key.
     pub fn find(key: &str) -> Option<&'static Self> {
         PARTICULARS.iter().find(|particular| particular.key == key)
     }
@@ -192,13 +192,16 @@ const ADVANCE_RANGE: [f64; 2] = [0.1, 1.3];
 /// Relative tolerance between displacement and C_b L B d.
 const DISPLACEMENT_TOLERANCE: f64 = 0.05;
 
+/// Acceleration of gravity, m/s².
 pub(super) const GRAVITY: f64 = 9.81;
+/// Density of sea water, kg/m³.
 const SEA_WATER: f64 = 1025.0;
+/// Density of fresh water, kg/m³.
 const FRESH_WATER: f64 = 1000.0;
 /// Minimum length of a ship in sea water, m; a shorter ship is a model in fresh water.
 const MIN_SHIP_LENGTH_M: f64 = 30.0;
 
-/// Complete dimensions of a hull; the propeller revolutions are optional.
+/// Complete dimensions of a hull in SI units; `n` is `None` for unknown propeller revolutions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HullDimensions {
     pub L: f64,

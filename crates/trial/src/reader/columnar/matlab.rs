@@ -74,7 +74,8 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, NonColumn
     Some(Ok(Variable::new(name, [rows, columns], kind, data, big_endian)))
 }
 
-/// Unpacks a variable with its tag; if it has no numbers, only up to its name.
+/// Unpacks a variable with its tag; if it has no numbers, only up to its name. `left` is the number of bytes that may
+/// still be unpacked.
 fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, Problem> {
     let mut decoder = ZlibDecoder::new(packed);
     let mut bytes = Vec::new();

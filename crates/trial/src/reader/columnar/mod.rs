@@ -1,9 +1,9 @@
 //! Binary tables: MATLAB variables, Parquet with the feature `parquet`, and spreadsheets with the feature
 //! `spreadsheets`.
 //!
-//! Each is converted to the text of a table, line by line, and read like any other table. Names, units, stamps
-//! and sidecars are handled there; only content that fits no table is omitted here (nested columns, variables of
-//! other lengths).
+//! Each is converted to the text of a table, line by line, and read like any other table. Names, units, stamps and
+//! sidecars are handled by the reader of tables. Only content that fits no table is omitted here: nested columns, and
+//! variables of other lengths.
 
 mod matlab;
 #[cfg(feature = "parquet")]

@@ -1,7 +1,7 @@
 //! Frames of a CAN bus, in the hexadecimal notation of candump and bus loggers, or in base64 as from python-can:
 //! recognised but not read, because a frame does not state its meaning.
 
-/// Bits of an extended identifier.
+/// Maximum extended identifier, of 29 bits.
 const MAX_IDENTIFIER: u32 = 0x1fff_ffff;
 
 /// Columns of a frame in the `CSVWriter` of python-can.

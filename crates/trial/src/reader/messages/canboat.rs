@@ -63,7 +63,8 @@ fn source_name(pgn: u64, source: u64, instance: u64) -> String {
     format!("the device at address {source}{rudder}")
 }
 
-/// Number of a message; the option -nv of canboat puts it into an object with its name.
+/// Number in a field of a message; the option -nv of canboat puts it into an object with its name. `None` for a field
+/// without a number.
 fn number(fields: &Value, name: &str) -> Option<f64> {
     fields[name].as_f64().or_else(|| fields[name]["value"].as_f64())
 }
@@ -94,7 +95,7 @@ fn plain(line: &str) -> Option<(&str, u64, u64, Vec<u8>)> {
     stamp.contains(':').then_some((*stamp, pgn, source.parse().ok()?, bytes))
 }
 
-/// Readings in the bytes of a message, in radians and m/s; the two highest numbers of a field mean "no reading".
+/// Readings in the bytes of a message, in SI units and radians; the two highest numbers of a field mean "no reading".
 fn readings_of_bytes(pgn: u64, bytes: &[u8]) -> Vec<RankedReading> {
     let raw = |from: usize, length: usize| {
         let field = bytes.get(from..from + length)?;

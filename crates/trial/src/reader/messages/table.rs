@@ -31,6 +31,7 @@ pub(super) struct LongTable {
     time: usize,
     path: usize,
     value: usize,
+    /// `None` for a table without a column of sources.
     source: Option<usize>,
 }
 

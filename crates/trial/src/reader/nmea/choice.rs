@@ -91,7 +91,7 @@ impl<'a> ChosenInstruments<'a> {
         offers
     }
 
-    /// Best candidate, with a warning if there are several, or `always`.
+    /// Best candidate, with a warning if there are several, or `always`; `None` without candidates.
     fn pick(&mut self, what: &str, offers: Vec<Offer<'a>>, always: bool) -> Option<Offer<'a>> {
         let most = offers.iter().map(|offer| offer.readings).max()?;
         let order = |offer: &&Offer| {

@@ -11,7 +11,7 @@ use crate::clock::{Clock, SECONDS_PER_DAY, Stamp, StampConverter};
 use crate::reader::error::Problem;
 use crate::wording::counted;
 
-/// Length of a gap, usual epochs.
+/// Minimum length of a gap, usual epochs.
 const GAP_EPOCHS: f64 = 1.5;
 
 /// Rows of an instrument in an epoch.
@@ -136,7 +136,7 @@ pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem
     Ok((Some(clock), warnings))
 }
 
-/// Time of the clock with its line.
+/// Time of the clock, s, with its line.
 #[derive(Debug, Clone, Copy)]
 struct Epoch {
     line: f64,
@@ -191,7 +191,8 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
     Ok((kept, clock, strayed))
 }
 
-/// Day at time 0, from the first date of an instrument; `second` is the second of the day at time 0.
+/// Day at time 0, from the first date of an instrument; `second` is the second of the day at time 0. `None` for an
+/// instrument without dates.
 fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Option<i64> {
     let (seconds, days) = (instrument.column(NmeaQuantity::Second)?, instrument.column(NmeaQuantity::Day)?);
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);

@@ -26,7 +26,7 @@ pub(super) enum Line<'a> {
 pub(super) struct Frame<'a> {
     /// Text before the sentence.
     pub before: &'a str,
-    /// Talker (two characters) and sentence (three).
+    /// Talker (two characters) and formatter of the sentence (three).
     pub address: [u8; 5],
     /// Bytes between the comma after the address and the checksum.
     pub body: &'a [u8],
@@ -124,7 +124,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// First fields of `body`.
+    /// Fields of the body of a sentence, separated by commas. Fields after the first [`MAX_FIELDS`] are ignored.
     pub fn new(body: &'a [u8]) -> Self {
         let mut fields = [&body[..0]; MAX_FIELDS];
         let (mut begin, mut place) = (0, 0);
@@ -164,7 +164,7 @@ pub(super) enum Number {
     Empty,
     /// Number.
     Value(f64),
-    /// Another text.
+    /// Text that is not a plain decimal number.
     Invalid,
 }
 

@@ -38,7 +38,7 @@ impl NmeaInstrument {
         self.address[2..] == *formatter
     }
 
-    /// Column of a quantity.
+    /// Index of the column of a quantity; `None` if the sentence does not have it.
     pub fn column(&self, slot: NmeaQuantity) -> Option<usize> {
         self.slots.iter().position(|&quantity| quantity == slot)
     }
@@ -60,9 +60,9 @@ pub(super) struct Counts {
     pub blank_lines: usize,
     /// Lines of text without a sentence.
     pub text_lines: usize,
-    /// Sentences, read or not.
+    /// Undamaged sentences of the standard, read or not.
     pub sentences: usize,
-    /// Sentences that are not read.
+    /// AIS and proprietary sentences, and those with an address outside the standard; they are not read.
     pub foreign_sentences: usize,
     pub wrong_checksums: usize,
     /// Sentences cut short, and lines that are not text.
@@ -91,6 +91,7 @@ pub(super) struct NmeaLog {
     latest: (f64, f64, usize),
     /// Line and time of the last stamp, if it is before the latest stamp.
     late: Option<(usize, f64)>,
+    /// Number of numbers in the tables, instants included.
     numbers: usize,
 }
 

@@ -118,7 +118,7 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
     Ok((series, Log { clock, warnings, rows: lines, sha256, ..Log::default() }))
 }
 
-/// Shifts times so that the first instant is 0.
+/// Shifts times so that the first instant is 0, and returns the clock at that instant.
 fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     let first = series.iter().filter_map(|series| series.time.first()).copied().fold(f64::INFINITY, f64::min);
     for series in series {

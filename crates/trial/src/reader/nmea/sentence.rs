@@ -147,7 +147,7 @@ const SENTENCES: [Sentence; 19] = {
 /// Formatter of transducers.
 pub(super) const XDR: &[u8; 3] = b"XDR";
 
-/// Sentence with a formatter.
+/// Sentence with a formatter; `None` if it is not supported.
 pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
     SENTENCES.iter().find(|(name, ..)| *name == formatter)
 }
@@ -333,14 +333,14 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     }
 }
 
-/// Day since 1970-01-01 from `ddmmyy`.
+/// Day since 1970-01-01 from `ddmmyy`; `None` for an invalid date.
 fn date(field: &[u8]) -> Option<f64> {
     let is_date = field.len() == 6 && field.iter().all(u8::is_ascii_digit);
     let digits: u32 = std::str::from_utf8(field).ok().filter(|_| is_date)?.parse().ok()?;
     Some(days_since_1970(full_year(digits % 100, 2)?, digits / 100 % 100, digits / 10_000)? as f64)
 }
 
-/// Day since 1970-01-01 from day, month and year.
+/// Day since 1970-01-01 from day, month and year; `None` for an invalid date.
 fn day(date: [Number; 3]) -> Option<f64> {
     let [Number::Value(day), Number::Value(month), Number::Value(year)] = date else { return None };
     (day >= 0.0 && month >= 0.0).then(|| days_since_1970(year as i32, month as u32, day as u32))?.map(|day| day as f64)

@@ -8,7 +8,7 @@ use crate::clock::{SECONDS_PER_DAY, Stamp};
 
 /// Maximum length of the text before a sentence, bytes; a longer text has no stamp.
 const MAX_TEXT_BYTES: usize = 120;
-/// Maximum number of blank-separated parts that are read before a sentence.
+/// Maximum number of parts that are read before a sentence; blanks, tabs and marks separate them.
 const MAX_WORDS: usize = 8;
 /// Maximum number of sources.
 const MAX_SOURCES: usize = 64;
@@ -18,7 +18,7 @@ const MAX_SOURCES: usize = 64;
 pub(super) struct PrefixReader {
     /// Names of sources; the number of a source is its index plus 1, 0 means no source.
     pub sources: Vec<String>,
-    /// Range of blank-separated parts with the last stamp, the same in most lines of a log.
+    /// Range of parts with the last stamp, the same in most lines of a log; `None` without a stamp in the last text.
     window: Option<(usize, usize)>,
     /// Text before the last sentence, with its stamp and source.
     last: String,
@@ -26,7 +26,7 @@ pub(super) struct PrefixReader {
 }
 
 impl PrefixReader {
-    /// Stamp before a sentence and number of the source.
+    /// Stamp before a sentence, `None` without one, and number of the source, 0 without one.
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
         if before != self.last {
             self.last_reading = self.parse(before);
@@ -83,7 +83,7 @@ impl PrefixReader {
         (stamp.map(|(stamp, _)| stamp), source)
     }
 
-    /// Number of the source with a name.
+    /// Number of the source with a name; 0 for an empty name, and for a new name beyond [`MAX_SOURCES`].
     fn source(&mut self, name: &str) -> u8 {
         match self.sources.iter().position(|source| source == name) {
             _ if name.is_empty() => 0,

@@ -25,7 +25,7 @@ struct VariableHead {
 }
 
 impl VariableHead {
-    /// Head of a variable at the beginning of a byte sequence; `None` if there is none.
+    /// Head of a variable at the beginning of a byte sequence; `None` for other bytes.
     fn read(scan: &mut ByteCursor) -> Option<Self> {
         let digits = scan.read_u32()?.checked_sub(if scan.big_endian { 1000 } else { 0 })?;
         let [rows, columns, complex, length] = [scan.read_u32()?, scan.read_u32()?, scan.read_u32()?, scan.read_u32()?];
@@ -38,7 +38,7 @@ impl VariableHead {
         is_head.then_some(Self { kind, class, rows, columns, complex: complex == 1, name })
     }
 
-    /// Length of the numbers after the head, bytes.
+    /// Length of the numbers after the head, bytes; `None` if it overflows.
     fn length(&self) -> Option<usize> {
         let parts = if self.complex { 2 } else { 1 };
         self.rows.checked_mul(self.columns)?.checked_mul(parts * size(self.kind)?)

@@ -71,7 +71,7 @@ impl<'a> ByteCursor<'a> {
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
-    /// Next data element: its kind and its bytes. Padding to eight bytes is skipped.
+    /// Next data element: its kind and its bytes; `None` if fewer bytes are left. Padding to eight bytes is skipped.
     pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
         let tag = self.read_u32()?;
         if tag >> 16 != 0 {

@@ -1,20 +1,20 @@
 //! Observer of the leave-one-out folds of a long analysis.
 
 /// Observer of the leave-one-out folds of an analysis of several records, which follow its main result.
-pub trait Watcher: Sync {
-    /// Start of `_count` leave-one-out folds, after the main result.
+pub trait FoldObserver: Sync {
+    /// Start of the leave-one-out folds, after the main result; the argument is their number.
     fn begin_folds(&self, _count: usize) {}
 
     /// End of one fold.
     fn end_fold(&self) {}
 
     /// `true` if the folds should stop; [`Analysis::leave_one_out`](crate::Analysis::leave_one_out) is then empty.
-    fn is_asked_to_stop(&self) -> bool {
+    fn should_stop(&self) -> bool {
         false
     }
 }
 
 /// Observer without action.
-pub(crate) struct NoWatcher;
+pub(crate) struct NoObserver;
 
-impl Watcher for NoWatcher {}
+impl FoldObserver for NoObserver {}
