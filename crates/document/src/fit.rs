@@ -81,7 +81,7 @@ pub struct PredictedCircleEntry {
     pub tactical_diameter_lengths: MedianEntry,
 }
 
-/// Median of drawn ships.
+/// Median and 90 % interval of a characteristic over ships drawn from the estimate and its covariance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MedianEntry {
     /// Median.

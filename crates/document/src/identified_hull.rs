@@ -13,7 +13,7 @@ use crate::error::IdentifiedShipError;
 /// Coefficient of a hull with its prior.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct IdentifiedCoefficient {
-    /// Key.
+    /// Key of the coefficient in files, such as `Xvv`.
     pub key: String,
     /// Symbol.
     pub symbol: String,

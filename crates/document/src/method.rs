@@ -8,7 +8,7 @@ use crate::noise::HeadingNoise;
 use crate::quantity::Quantity;
 use crate::trace::PrimeIndices;
 
-/// K, T and δ_r of one method.
+/// Estimates of K, T and δ_r by one method, with their uncertainties.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct IndexEstimates {
     /// K, 1/s.

@@ -22,7 +22,7 @@ pub enum CurveOrigin {
     Bound,
     /// Model before an addition.
     Before,
-    /// The same model after the addition.
+    /// Model after effects are added.
     After,
     /// One of several series that are not methods, in greys.
     Series {

@@ -32,7 +32,8 @@ pub struct Recording {
     /// Source of the rudder column: the feedback, or angles reconstructed from the orders.
     #[serde(default)]
     pub rudder: RudderSource,
-    /// Rudder rate assumed in the reconstruction from orders; inf for an instantaneous rudder.
+    /// Rudder rate assumed in the reconstruction from orders, rad/s (deg/s in files); inf for an instantaneous rudder.
+    /// Required if `rudder` is `orders`, otherwise left out.
     #[serde(default, rename = "assumed-rudder-rate-deg-s", with = "Degrees::<Option<f64>>")]
     pub assumed_rudder_rate: Option<f64>,
     // It has no effect on the simulation: a declaration may be wrong.

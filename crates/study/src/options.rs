@@ -1,4 +1,4 @@
-//! Options and arguments of the commands: declarations only, each option once.
+//! Options and arguments of the commands. Longer than most: each option is declared once. Declarations only.
 
 use std::path::PathBuf;
 use std::str::FromStr;

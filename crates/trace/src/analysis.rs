@@ -21,7 +21,7 @@ use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, initial_state_guesses, replay_base};
 use crate::empirical;
 use crate::fit::{FittedRecords, StructureFit};
-use crate::fold_observer::{FoldObserver, NoObserver};
+use crate::fold_observer::{FoldObserver, NoFoldObserver};
 use crate::full::{self, FullModel};
 use crate::hulls;
 use crate::leave_one_out::leave_one_out;
@@ -138,7 +138,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
-    trace_with_observer(trials, validation, settings, &NoObserver)
+    trace_with_observer(trials, validation, settings, &NoFoldObserver)
 }
 
 /// [`trace`] with an observer of the leave-one-out folds, which can stop them.

@@ -68,11 +68,6 @@ impl MonomialPowers {
         let factors = ["r", "delta", "psi", "U"].into_iter().enumerate().map(factor);
         format!("proposal = c{}", factors.collect::<String>())
     }
-
-    /// Product of the powers of r (rad/s), δ and ψ (rad); magnitudes and the power of U are ignored.
-    pub fn value_at(&self, factors: [f64; 3]) -> f64 {
-        factors.iter().zip(self.exponents).map(|(factor, power)| factor.powi(power)).product()
-    }
 }
 
 /// Monomials up to the third degree that are not named effects.

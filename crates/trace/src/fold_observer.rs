@@ -15,6 +15,6 @@ pub trait FoldObserver: Sync {
 }
 
 /// Observer without action.
-pub(crate) struct NoObserver;
+pub(crate) struct NoFoldObserver;
 
-impl FoldObserver for NoObserver {}
+impl FoldObserver for NoFoldObserver {}

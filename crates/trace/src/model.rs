@@ -213,8 +213,8 @@ impl Structure {
         &map * covariance * map.transpose()
     }
 
-    /// Indices in θ of the parameters of [`response`](Self::response) for a record, base first; with `None` without the
-    /// terms of single records.
+    /// Indices in θ of the parameters of [`response`](Self::response), base first: those that act in the fitted record
+    /// `record`. `None` means any other record of the ship, in which no time-dependent term acts.
     pub fn response_indices(&self, record: Option<usize>) -> Vec<usize> {
         let mut places: Vec<usize> = (0..BASE_PARAMETER_COUNT).collect();
         for (term, range) in self.terms.iter().zip(self.term_ranges()) {

@@ -121,7 +121,7 @@ pub enum Trigger {
     Never,
 }
 
-/// One step of a manoeuvre.
+/// Step of a manoeuvre: a rudder order, or the end, with the condition that triggers it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrderStep {
     /// Condition of the order.

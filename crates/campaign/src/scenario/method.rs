@@ -106,7 +106,7 @@ pub struct MethodName {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct IdentifierWire {
-    /// Label in tables and plots; its id if omitted.
+    /// Label in tables and plots; the id of the method if omitted.
     pub label: Option<String>,
     /// Method by its id, with its settings.
     pub method: Option<IdentifierSettings>,

@@ -91,7 +91,7 @@ pub struct SweepSetting {
     pub value: Value,
     /// Path in the file that names the key.
     pub key_place: KeyPath,
-    /// Path in the file with the value.
+    /// Path of the value in the scenario file.
     pub value_place: KeyPath,
 }
 

@@ -17,7 +17,7 @@ pub const MAX_PERIOD_ERROR: f64 = 0.15;
 /// Time-dependent effects, which are not properties of the ship.
 const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
 
-/// Judgement of a trace.
+/// Agreement of the verdict of a trace with the missing physics of the simulated ship.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Judgement {
     /// Only correct effects were named.

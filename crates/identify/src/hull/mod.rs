@@ -90,7 +90,7 @@ pub struct HullEstimate {
     pub prior: HullFormPrior,
     /// Length, speed and propeller rate that make the quantities dimensionless.
     pub reference: HullReference,
-    /// Values of the coefficients.
+    /// Estimates of the coefficients, dimensionless, in the order of `prior.coefficients`.
     pub values: DVector<f64>,
     /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
@@ -197,7 +197,7 @@ impl HullEstimate {
         PriorCheck::from_fit(&self.prior, &self.values, &self.covariance)
     }
 
-    /// Mean square residual of whole records, rad².
+    /// Mean over the records, with equal weights, of the mean square heading error of the whole replay, rad².
     pub fn mean_square(&self) -> f64 {
         self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
     }

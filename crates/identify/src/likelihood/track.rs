@@ -82,8 +82,8 @@ pub struct RudderCorner {
 }
 
 impl RudderCorner {
-    /// Contribution of the corner to the heading (rad) and the yaw rate (rad/s) at the end of the step, over b = K/T:
-    /// in rad s² and rad s.
+    /// Contribution of the corner to heading and yaw rate at the end of the step, divided by b = K/T: [φ₃ Δ, φ₂ Δ] in
+    /// rad s² and rad s, with the change Δ of the rudder rate and φₙ of [`Transition`]. `inverse_T` is 1/T, 1/s.
     #[inline]
     pub fn response(&self, inverse_T: f64) -> [f64; 2] {
         let step = Transition::new(inverse_T, self.remaining);

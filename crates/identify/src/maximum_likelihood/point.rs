@@ -87,7 +87,7 @@ pub(super) struct RecordAtPoint {
     /// Contribution to −2 log L.
     pub deviance: f64,
     /// Additional contribution to −2 log of the restricted likelihood.
-    pub determinant: f64,
+    pub log_determinant: f64,
     /// Sums of products of the sensitivities to 1/T, b and b δ_r.
     pub motion: Matrix3<f64>,
     /// Whitened columns.
@@ -362,11 +362,11 @@ impl RecordAtPoint {
         let anchor = white.start(K_over_T, offset)?;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
-        let determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
+        let log_determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
         let by_time = white.by_time(&Coefficients { anchor, K_over_T, offset });
         let (motion, innovations) = (white.motion(&by_time), white.residual(K_over_T, offset));
         let readings = record.len();
-        Some(Self { variance, readings, anchor, innovations, deviance, determinant, motion, white, by_time })
+        Some(Self { variance, readings, anchor, innovations, deviance, log_determinant, motion, white, by_time })
     }
 }
 
@@ -404,7 +404,7 @@ fn point(records: &[Record], (inverse_T, vectors): &Start, columns: Vec<Whitened
     let parts = parts.map(part).collect::<Option<Vec<_>>>()?;
     let deviance = parts.iter().map(|part| part.deviance).sum::<f64>();
     let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();
-    let determinant = parts.iter().map(|part| part.determinant).sum::<f64>() + motion.determinant().ln();
+    let determinant = parts.iter().map(|part| part.log_determinant).sum::<f64>() + motion.determinant().ln();
     let [K_over_T, offset] = steering;
     let restricted = deviance + determinant;
     let ship = K_over_T > 0.0 && restricted.is_finite();

@@ -22,7 +22,8 @@ pub(super) struct ScoreAndInformation {
     pub score: DVector<f64>,
     /// Fisher information, the sizes of the compass errors eliminated.
     pub information: DMatrix<f64>,
-    /// Scores of (1/T, b, b δ_r) reading by reading, for every record.
+    /// Derivatives of log L through the response with respect to (1/T, b, b δ_r), times the variance of the compass
+    /// error: one column by reading for each parameter, for every record.
     pub scores: Vec<[Vec<f64>; 3]>,
     /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero if the compass error is tied.
     pub totals: Vec<DVector<f64>>,
@@ -67,7 +68,8 @@ impl Slope {
         let innovation = pairs.map(|((there, here), log)| (there - here) / by + 0.5 * here * log).collect();
         let deviance = there.deviance - here.deviance;
         let moved = motion - here.motion / here.variance + there.motion / there.variance;
-        let determinant = there.determinant - here.determinant + (moved.determinant() / motion.determinant()).ln();
+        let determinant =
+            there.log_determinant - here.log_determinant + (moved.determinant() / motion.determinant()).ln();
         let score = [deviance, deviance + determinant].map(|change| 0.5 * change / by);
         Self { innovation, log_variance, score, tied: (there.variance / here.variance).ln() / by }
     }

@@ -274,7 +274,7 @@ pub struct PanelRow {
     pub height: f64,
     /// `true` if there is a line at zero.
     pub zero: bool,
-    /// Levels of dashed lines from left to right, such as the limits of white noise.
+    /// Values on the vertical axis of horizontal dashed lines, such as the limits of white noise.
     pub levels: Vec<f64>,
     /// Reference value of the results, with its band of chance; `None` without a reference.
     pub reference: Option<Reference95>,

@@ -8,22 +8,6 @@ use crate::canvas::{PagePoint, Rect, TextLine};
 use crate::chart::Chart;
 use crate::theme::Theme;
 
-/// Places of a label about its point in order of preference: right or left, then above (−1, farther −2) or below.
-const SIDES: [(f64, f64); 12] = [
-    (1.0, -1.0),
-    (-1.0, -1.0),
-    (1.0, 1.0),
-    (-1.0, 1.0),
-    (0.0, -1.0),
-    (0.0, 1.0),
-    (1.0, -2.0),
-    (-1.0, -2.0),
-    (1.0, 2.0),
-    (-1.0, 2.0),
-    (1.0, 0.0),
-    (-1.0, 0.0),
-];
-
 /// Distance that a label keeps from lines, in font sizes.
 const CLEARANCE: f64 = 0.25;
 
@@ -73,21 +57,11 @@ impl Obstacles {
     }
 }
 
-/// `true` if a segment has a point in a rectangle (Liang and Barsky 1984).
+/// `true` if one of many equidistant points of a segment lies in a rectangle.
 fn crosses(place: Rect, [from, to]: [PagePoint; 2]) -> bool {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let sides =
-        [(-dx, from.0 - place.x), (dx, place.right() - from.0), (-dy, from.1 - place.y), (dy, place.bottom() - from.1)];
-    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
-    for (step, room) in sides {
-        match step {
-            0.0 if room < 0.0 => return false,
-            0.0 => {}
-            step if step < 0.0 => enters = enters.max(room / step),
-            step => leaves = leaves.min(room / step),
-        }
-    }
-    enters <= leaves
+    const STEPS: u32 = 64;
+    let between = |from: f64, to: f64, step| from + (to - from) * f64::from(step) / f64::from(STEPS);
+    (0..=STEPS).any(|step| place.contains((between(from.0, to.0, step), between(from.1, to.1, step))))
 }
 
 /// Writes the labels of all layers of a panel.
@@ -100,29 +74,26 @@ pub(super) fn draw(chart: &Chart, layers: &[Layer], theme: &Theme) -> PlotResult
             let Some((x, y)) = chart.inside(x, y) else { continue };
             let text = TextLine::new(label, theme.small_font, HPos::Center);
             let (width, height) = (text.width(), theme.small_font);
-            let at = |(right, down): (f64, f64)| {
-                let gap = if down == 0.0 { 1.8 } else { 1.2 } * theme.marker;
-                let side = if down == 0.0 { 0.0 } else { down.signum() };
-                let shift = side * (theme.marker + 0.4 * height) + 0.7 * (down - side) * height;
-                (x + right * (gap + 0.5 * width), y + shift)
+            // Shifts to the right or left, above or below, near or farther, in order of preference.
+            let shifts = [1.0, 2.0].into_iter().flat_map(|far| [[1.0, -far], [-1.0, -far], [1.0, far], [-1.0, far]]);
+            let at = |[right, down]: [f64; 2]| {
+                let farther = 0.7 * (down - down.signum()) * height;
+                let below = y + down.signum() * (theme.marker + 0.4 * height) + farther;
+                (x + right * (1.2 * theme.marker + 0.5 * width), below)
             };
-            let place =
-                |(x, y): PagePoint| Rect { x: x - 0.5 * width, y: y - 0.45 * height, w: width, h: 0.9 * height };
-            let cost = |side: (f64, f64)| {
-                let place = place(at(side));
-                let corners = [(place.x, place.y), (place.right(), place.bottom())];
-                let is_within = corners.into_iter().all(|corner| frame.contains(corner));
-                let clear = CLEARANCE * height;
-                let Rect { x, y, w, h } = place;
-                let near = Rect { x: x - clear, y: y - clear, w: w + 2.0 * clear, h: h + 2.0 * clear };
-                let far = if side.1.abs() > 1.0 { FAR } else { 0.0 };
-                obstacles.cost(near) + far + if is_within { 0.0 } else { BEYOND }
+            let place = |(x, y): PagePoint, clear: f64| {
+                let (half_width, half_height) = (0.5 * width + clear, 0.45 * height + clear);
+                Rect { x: x - half_width, y: y - half_height, w: 2.0 * half_width, h: 2.0 * half_height }
             };
-            let sides = SIDES.into_iter();
-            let middle = sides.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).map_or((x, y), at);
+            let cost = |shift: [f64; 2]| {
+                let letters = place(at(shift), 0.0);
+                let corners = [(letters.x, letters.y), (letters.right(), letters.bottom())];
+                let beyond = if corners.into_iter().all(|corner| frame.contains(corner)) { 0.0 } else { BEYOND };
+                obstacles.cost(place(at(shift), CLEARANCE * height)) + beyond + FAR * (shift[1].abs() - 1.0)
+            };
+            let middle = shifts.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).map_or((x, y), at);
             chart.canvas.text_with_halo(middle, &text)?;
-            let Rect { x, y, w, h } = place(middle);
-            obstacles.0.push(([(x, y + 0.5 * h), (x + w, y + 0.5 * h)], LABEL));
+            obstacles.0.push(([(middle.0 - 0.5 * width, middle.1), (middle.0 + 0.5 * width, middle.1)], LABEL));
         }
     }
     Ok(())

@@ -44,8 +44,7 @@ impl RowItem {
             RowKind::Heading => Vec::new(),
             RowKind::Violin(_, _, quantiles) => {
                 // The middle of a distribution has priority over its ends.
-                let rooms = [(1, BOXES), (2, MEDIANS), (3, BOXES)];
-                data.soft.extend(rooms.map(|(place, room)| (quantiles[place], room)));
+                data.soft.extend([1, 2, 3].map(|place| (quantiles[place], BOXES)));
                 vec![quantiles[0], quantiles[4]]
             }
         };
@@ -56,10 +55,7 @@ impl RowItem {
     }
 }
 
-/// Maximum multiple of the range of all other data by which the median of a distribution may widen an axis.
-const MEDIANS: f64 = 4.0;
-
-/// Maximum multiple of that range by which the quartiles of a distribution may widen an axis.
+/// Maximum multiple of the range of all other data by which the quartiles of a distribution may widen an axis.
 const BOXES: f64 = 4.0;
 
 fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {

@@ -24,7 +24,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Empty table.
+    /// Table with the columns of `head`, without rows, title or label.
     pub fn new(head: TableHead) -> Self {
         Self { columns: head.columns, ..Self::default() }
     }

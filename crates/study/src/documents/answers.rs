@@ -45,7 +45,7 @@ pub struct CheckAnswer {
 /// A valid scenario.
 #[derive(Serialize, JsonSchema)]
 pub struct CheckedScenario {
-    /// The file as it was named.
+    /// File, as the user named it.
     pub file: String,
     /// Name of the scenario.
     pub name: String,

@@ -17,7 +17,7 @@ const MIN_GAP: f64 = 1.5;
 /// Result for one log.
 #[derive(Serialize, JsonSchema)]
 pub struct InspectAnswer {
-    /// The log.
+    /// File, number of rows, duration and date of the log.
     #[serde(flatten)]
     pub log: LogEntry,
     /// Channels of the log.

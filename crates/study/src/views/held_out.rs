@@ -71,7 +71,8 @@ pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> O
     (!all.is_empty()).then(|| format!(" There the 95 % band holds {}.", all.join(" and ")))
 }
 
-/// Figure of the errors on held-out records, from zero, so that ratios are visible; `None` if there are none.
+/// Figure of the heading errors on held-out records before and after. Its axes begin at zero, so that ratios are
+/// visible. `None` without held-out records.
 pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {

@@ -246,9 +246,9 @@ const MAX_SERIES: usize = 6;
 /// Number of ranges per decade of the expected 2 ln Λ if there are many kinds of trial.
 const RANGES_PER_DECADE: f64 = 3.0;
 
-/// Power over the expected 2 ln Λ of the truth against the nearest first-order response, for cells with one missing
-/// effect: each by its name if they are few, else pooled over ranges of 2 ln Λ. `None` if every effect is named in
-/// every trial.
+/// Figure of the detection power against the expected 2 ln Λ of the truth over the nearest first-order response, for
+/// response models with one missing effect. A few cells are shown under the name of the effect; more are pooled over
+/// ranges of 2 ln Λ. `None` without such a cell, or if the effect is named in every trial.
 pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
         line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
@@ -340,7 +340,8 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
-/// Bins of effects by their probability, over all cells.
+/// Calibration of the probabilities of effects: pairs of effect and trial by bins of [`CALIBRATION_BIN_EDGES`], summed
+/// over all cells.
 pub fn calibration_bins(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
     let mut all = vec![CalibrationBin::default(); CALIBRATION_BIN_EDGES.len() - 1];
     for line in lines {

@@ -19,7 +19,7 @@ use super::stored_ships::{StoredShips, ships_of, text_of};
 use crate::documents::prior;
 use crate::records::file_and_hash;
 
-/// Hulls of a model of earlier trials.
+/// Model fitted to earlier trials, whose hulls are priors of a new fit.
 #[derive(Debug, Clone)]
 pub struct EarlierModel {
     file: String,

@@ -29,7 +29,7 @@ pub struct LinearisedStructure {
     /// Prior precision of the integrated unknowns and their offset from the prior mean.
     pub prior: Vec<(f64, f64)>,
     /// Distance of the penalised coefficients from neutral.
-    pub sizes: Vec<f64>,
+    pub departures_from_neutral: Vec<f64>,
     /// Lower bound of the white-noise variance of a row, in units of the variance of the weights.
     pub min_variance: f64,
 }
@@ -136,7 +136,7 @@ impl WhitenedStructure {
         let mut all = Self { blocks, factor, solution, t_values, square, fixed, freedom, log_n, min_variance };
         all.t_values = (structure.integrated..count)
             .map(|k| {
-                let sizes = structure.sizes.iter().enumerate().skip(k - structure.integrated);
+                let sizes = structure.departures_from_neutral.iter().enumerate().skip(k - structure.integrated);
                 let away: f64 = sizes.map(|(j, size)| all.factor[structure.integrated + j][k] * size).sum();
                 all.solution[k] + away
             })

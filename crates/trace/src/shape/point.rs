@@ -108,7 +108,7 @@ impl<'a> StructurePoint<'a> {
             linear,
             integrated,
             prior,
-            sizes: fitted[of_base..].iter().map(size).collect(),
+            departures_from_neutral: fitted[of_base..].iter().map(size).collect(),
             min_variance: self.min_variance(),
         }
     }

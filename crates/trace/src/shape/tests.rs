@@ -136,7 +136,7 @@ fn criteria_are_those_of_dense_matrices() {
         linear: Linearisation { blocks: vec![block], unknowns: 3 },
         integrated: 2,
         prior: vec![(0.0, 0.0); 2],
-        sizes: vec![0.7],
+        departures_from_neutral: vec![0.7],
         min_variance: 0.0,
     };
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();

@@ -97,7 +97,8 @@ pub(super) fn split_columns(columns: Columns, offset: f64) -> Vec<Series> {
     channels.into_iter().map(readings).collect()
 }
 
-/// Adds derived channels: the rudder order for a missing rudder angle, the speed from surge and sway.
+/// Adds missing channels that others determine: the speed from surge and sway, and the rudder angle from the rudder
+/// order. Returns a warning if the order replaces the angle.
 pub(super) fn add_derived_channels(columns: &mut Columns) -> Option<Warning> {
     let channels = &mut columns.channels;
     if !channels.contains_key(&Channel::Speed)

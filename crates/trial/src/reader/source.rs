@@ -48,7 +48,7 @@ pub struct Log {
     pub(super) columns: Columns,
     /// Clock at time 0; `None` if the files state neither date nor time of day.
     pub clock: Option<Clock>,
-    /// SHA-256 of the bytes, hexadecimal.
+    /// SHA-256 of the bytes of the file, hexadecimal; of joined files, the SHA-256 of their two hashes as text.
     pub(super) sha256: String,
     /// Number of rows or lines of the files.
     pub(super) rows: usize,
