@@ -31,7 +31,7 @@ HEAD = "# Results\n"
 STUDIES = """
 ## Studies
 
-Each section is a study: its question, its result, and the figure that shows the result. The studies behind the answers
+Each section is a study: its question, its result and, in most sections, the figure that shows the result. The studies behind the answers
 above come first, in the same order; the others follow by name. The name leads to the whole report. The folder of a
 study also contains every number with its 95 % interval as CSV and LaTeX, and a manifest. Rows are not stored:
 `study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that the section

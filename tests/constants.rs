@@ -79,8 +79,8 @@ fn constants(text: &str) -> Vec<Constant> {
 /// The whole page.
 fn page() -> String {
     let mut page = format!(
-        "# Constants\n\nThis page is for readers of the source. It lists the numbers that were chosen and that no setting changes; *file* \
-         and *constant* say where they stand. [Methodology](../../../METHODOLOGY.md) says where they are used, and \
+        "# Constants\n\nThis page is for readers of the source. It lists the numbers that were chosen and that no setting changes; the \
+         columns *file* and *constant* say where each number is set. [Methodology](../../../METHODOLOGY.md) says where they are used, and \
          [Choices](choices.md) what other values change. Made by `{COMMAND}`.\n"
     );
     for (folder, heading) in FOLDERS {

@@ -55,7 +55,7 @@ pub(crate) struct TableKeys {
     pub skip_lines: usize,
     /// Separator of cells; recognised if absent. (comma, semicolon, tab or blank)
     pub separator: Option<Separator>,
-    /// Character encoding; if absent utf-8, and windows-1252 in other lines. (utf-8 or windows-1252)
+    /// Character encoding; if absent, utf-8, and windows-1252 for lines that are not utf-8. (utf-8 or windows-1252)
     #[serde(default)]
     pub encoding: Encoding,
     /// `true` if a line with names comes before the rows; true if absent. (true or false)
@@ -81,7 +81,7 @@ pub(crate) struct PartKeys {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct ColumnKeys {
-    /// Index of the column, from 1; this or its name. (number)
+    /// Index of the column, counted from 1; either the index or the name is given. (number)
     pub index: Option<usize>,
     /// Name of the column in the header. (text)
     pub name: Option<String>,
@@ -97,7 +97,7 @@ pub(crate) struct ColumnKeys {
     pub zero: Option<f64>,
     #[schemars(
         with = "Option<String>",
-        description = "A column that is worked out of others, as they stand in the file, in place of index and name: \
+        description = "A column computed from others, as they stand in the file, in place of index and name: \
         `(port - starboard) / 2`; needs `is`. (text)"
     )]
     pub formula: Option<Spanned<String>>,

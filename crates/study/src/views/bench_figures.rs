@@ -101,7 +101,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let look = |method: &str| {
         let look = curve_origin(method).look();
         let colour = if is_plain || is_winner(method) { look.colour } else { tint(look.colour) };
-        Look { colour, ..look }
+        Look { colour, hollow: false, ..look }
     };
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
     if rivals.is_empty() || !has_ratios {

@@ -16,12 +16,14 @@ use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Remark on the trials behind every value, with their number or its range; of measured records, on the predictions.
+/// Remark on the trials behind every value, with their number or its range; the rows of measured records have theirs.
 pub fn trials_remark(design: &Design) -> String {
+    if design.is_measured() {
+        return String::from("n: predicted records.");
+    }
     let counts: Vec<u64> = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).collect();
     let each = if design.cells.len() > 1 { " each" } else { "" };
-    let what = if design.is_measured() { "predicted records" } else { "simulated trials" };
-    format!("{} {what}{each}.", count_range(&counts))
+    format!("{} simulated trials{each}.", count_range(&counts))
 }
 
 /// Range of counts as text: "4 to 40", or the count that all have.
@@ -98,7 +100,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let Highlight { rows, over_bound, .. } = highlight;
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
-    let mut are_exact = false;
+    let (mut are_exact, mut are_cut) = (false, false);
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.columns.is_some() {
@@ -116,6 +118,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
         for panel in &mut stack.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
+            are_cut |= quiet.iter().any(|layer| layer.curve.y.iter().any(|y| y.is_infinite()));
             panel.layers = paled(quiet, &quiet_names);
             let values = point_values(&shown, &points, &unit);
             panel.detail = shown_over_bound(&shown).filter(|_| *over_bound);
@@ -132,6 +135,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
         }
     }
     data.note.take_if(|note| note == EXACT_NOTE && !are_exact);
+    notes.extend(are_cut.then(|| String::from("Grey lines end where an error exceeds 100 %.")));
     (!notes.is_empty()).then(|| notes.join(" "))
 }
 

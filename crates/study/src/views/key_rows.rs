@@ -7,7 +7,7 @@ use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{counted, fixed, significant};
 use report::palette::{Look, QUIET, RECORD, RGBColor};
 
-use super::pooled_charts::ALL_CELLS_ROW;
+use super::pooled_charts::{ALL_CELLS_ROW, COUNT};
 
 /// Maximum number of rows that all have their values written.
 const MAX_NUMBERED_ROWS: usize = 10;
@@ -77,8 +77,9 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
 }
 
 /// `true` for a row that is neither highlighted nor the row of all cells.
-fn is_pale(name: &String, about: &[String]) -> bool {
-    name != ALL_CELLS_ROW && !about.contains(name)
+fn is_pale(name: &str, about: &[String]) -> bool {
+    let label = name.split_once(COUNT).map_or(name, |(label, _)| label);
+    label != ALL_CELLS_ROW && !about.iter().any(|row| row == label)
 }
 
 /// Moves the highlighted rows up, below the row of all cells.

@@ -74,7 +74,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
         note: Some(format!(
             "Shares in per cent; {} trials of each kind of ship. Known: on the list of effects, in another formula. \
              Unknown: on no list. Located: its dependence and its times are found. Disturbed: a random moment. Clean: \
-             noise alone.",
+             noise alone. Empty: no trial.",
             count_range(&counts)
         )),
     };

@@ -99,8 +99,14 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let seen = document.ship.validity_range.rudder_rad;
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
     let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
-    let data =
-        NamedRows { names: all.iter().map(name).collect(), columns: vec![column], shaded, ..NamedRows::default() };
+    let is_partial = all.iter().any(|overshoot| overshoot.replayed.contains(&None));
+    let data = NamedRows {
+        names: all.iter().map(name).collect(),
+        columns: vec![column],
+        shaded,
+        note: is_partial.then(|| String::from("No mark: the replay has no such overshoot, which counts as missing.")),
+        ..NamedRows::default()
+    };
     let held_out = document.records.iter().filter(|record| record.held_out).count();
     let error_words = |error: OvershootError| {
         let off = error.median_deg.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2)));

@@ -1,8 +1,8 @@
 //! Maps over two axes, and distributions of errors: of all trials of a study with one cell, or of cells whose detail
 //! was requested.
 
-use campaign::design::Design;
-use campaign::statistics::{distinct, grouped};
+use campaign::design::{CellFacts, Design};
+use campaign::statistics::{Statistic, distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
 use report::figures::{
@@ -35,11 +35,17 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             _ => String::from("median error of an unseen heading [°]"),
         };
         // Cells are the product of the axes, the first axis slowest.
-        let cell = |x: usize, y: usize, method: usize| {
-            let record = summary.performance(y * columns.len() + x, method);
-            let value = record.and_then(|record| measure.statistic(record, panel)).map(|figure| figure.value);
-            MapCell { value, ..MapCell::default() }
+        let figure = |x: usize, y: usize, method: usize| {
+            measure.statistic(summary.performance(y * columns.len() + x, method)?, panel)
         };
+        let cell = |x: usize, y: usize, method: usize| MapCell {
+            value: figure(x, y, method).map(|figure| figure.value),
+            ..MapCell::default()
+        };
+        let places = (0..rows.len()).flat_map(|y| (0..columns.len()).map(move |x| (x, y)));
+        let figures = places.flat_map(|(x, y)| methods.iter().filter_map(move |&method| figure(x, y, method)));
+        let half_width = |figure: Statistic| figure.ci95.map(|[low, high]| 50.0 * (high - low) / figure.value);
+        let widest = figures.filter_map(half_width).filter(|width| width.is_finite()).reduce(f64::max);
         let panel = |method: usize| {
             let row = |y: usize| (0..columns.len()).map(|x| cell(x, y, method)).collect();
             (Some(design.methods[method].label.clone()), (0..rows.len()).map(row).collect())
@@ -49,8 +55,8 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             columns: columns.clone(),
             rows: rows.clone(),
             shades: Shades::Range(TickRule::Logarithmic, title.clone()),
+            note: widest.map(|width| format!("95 % intervals: at most ±{} % of the value.", significant(width, 1))),
             panels: methods.into_iter().map(panel).collect(),
-            note: None,
         };
         Some((format!("heat-map-{stem}"), title, map))
     };
@@ -93,6 +99,9 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
+
+/// 97.5 % quantile of the standard normal distribution.
+const NORMAL_QUANTILE: f64 = 1.96;
 
 /// Half width of the axes of clouds, in median sizes of the ellipses.
 const REACH: f64 = 2.2;
@@ -140,7 +149,10 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
             detail.methods.iter().flat_map(|fit| &fit.cloud).map(|cloud| cloud.points.len()).max().unwrap_or(0);
         let trials = summary.performance(detail.cell, 0).map_or(0, |record| record.trials);
         let mut note = format!(
-            "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}."
+            "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}. 95 % \
+             intervals of the multiples of the bound: ±{:.1} %.",
+            // Of a standard deviation of that many normal errors.
+            100.0 * NORMAL_QUANTILE / (2.0 * trials as f64).sqrt()
         );
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
@@ -204,11 +216,20 @@ const MAX_ROWS: usize = 10;
 fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].as_str())).len();
     let longest = (0..design.axes.len()).max_by_key(|&axis| labels(axis));
-    grouped(0..design.cells.len(), |&cell| match longest.filter(|_| design.cells.len() > MAX_ROWS) {
-        Some(axis) => design.cells[cell].labels[axis].clone(),
-        None => design.cells[cell].labels.join(", "),
-    })
+    let name = |cell: usize| {
+        let CellFacts { labels, trials, .. } = &design.cells[cell];
+        match longest.filter(|_| design.cells.len() > MAX_ROWS) {
+            Some(axis) => labels[axis].clone(),
+            // Records of measured rows differ in number.
+            None if design.is_measured() => format!("{}{COUNT} {})", labels.join(", "), trials.end - trials.start),
+            None => labels.join(", "),
+        }
+    };
+    grouped(0..design.cells.len(), |&cell| name(cell))
 }
+
+/// Text between the name of a row and the number of its records.
+pub const COUNT: &str = " (n =";
 
 /// Centre and ends of some values after `outer` per cent are cut at either end: the mean without a cut, else the
 /// median; `None` without values.

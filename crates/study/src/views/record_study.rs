@@ -153,7 +153,12 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         items
     };
     let cells: Vec<usize> = distinct(lines.iter().map(|line| line.cell));
-    let names: Vec<String> = cells.iter().map(|&cell| design.cells[cell].labels.join(", ")).collect();
+    let count = |cell: usize| {
+        let is_judged = |row: &&StudyRow| (row.cell as usize, row.method) == (cell, lines[0].method);
+        rows.iter().filter(is_judged).filter(|row| row.validation_rmse_deg.is_some()).count()
+    };
+    let name = |&cell: &usize| format!("{} (n = {})", design.cells[cell].labels.join(", "), count(cell));
+    let names: Vec<String> = cells.iter().map(name).collect();
     let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
         x: AxisSpec::new("heading error on records that were not fitted [°]", TickRule::Logarithmic),

@@ -112,9 +112,8 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
             (share_of(lines, |line| line.falsely_named, false)?, share_of(lines, |line| line.exactly_named, true)?);
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
-    let data = trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?);
-    let [all, lacking] = [false, true].map(|lacks| trials_of(&rules[0].1, lacks));
-    Some(NamedRows { note: Some(format!("{all} trials of each rule; in {lacking} the ship lacks an effect.")), ..data })
+    let counts = [false, true].map(|lacks| trials_of(&rules[0].1, lacks));
+    Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?, counts))
 }
 
 /// Minimum upper end of the axis of false names, per cent: a small share is to look small.
@@ -169,14 +168,15 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     })
 }
 
-/// Rules as rows: one row for every variant after the comma of their labels, with every kind before it.
-fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
+/// Rules as rows: one row for every variant after the comma of their labels, with every kind before it; `all` trials,
+/// of which `lacking` are of ships that lack an effect.
+fn trade_off(rules: &[(&str, Statistic, Statistic)], [all, lacking]: [u64; 2]) -> NamedRows {
     const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
     let parts: Vec<(&str, &str)> = rules.iter().map(|(name, ..)| name.split_once(", ").unwrap_or(("", name))).collect();
     let kinds = distinct(parts.iter().map(|(kind, _)| *kind));
     let variants = distinct(parts.iter().map(|(_, variant)| *variant));
-    let column = |title: &str, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
+    let column = |title: String, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
         let item = |(rule, (kind, _)): (&(&str, Statistic, Statistic), &(&str, &str))| {
             let number = kinds.iter().position(|other| other == kind).unwrap_or(0) % COLOURS.len();
             let look = Look { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
@@ -191,8 +191,8 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)]) -> NamedRows {
         names_title: String::from("named if its probability is"),
         names: variants.iter().map(|variant| (*variant).to_owned()).collect(),
         columns: vec![
-            column("trials with a false name [%]", |(_, wrong, _)| *wrong),
-            column("trials named exactly [%]", |(.., exact)| *exact),
+            column(format!("trials with a false name (n = {all}) [%]"), |(_, wrong, _)| *wrong),
+            column(format!("trials named exactly (n = {lacking}) [%]"), |(.., exact)| *exact),
         ],
         ..NamedRows::default()
     }

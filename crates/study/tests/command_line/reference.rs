@@ -21,7 +21,7 @@ const LISTS: [(&str, &str); 6] = [
 const COMMANDS: &str = "\
 # Commands
 
-What `study` can be asked, command by command, in the words of `study COMMAND --help`. Made from them by `cargo test -p study
+This page lists every command of `study` with its arguments and options, in the words of `study COMMAND --help`. It is made by `cargo test -p study
 --test command_line write_the_reference -- --ignored`.
 
 ";
@@ -32,15 +32,17 @@ const PRIORS: &str = "\
 
 This page lists the prior of every coefficient of an MMG hull (Yasukawa and Yoshimura 2015, prime system ½ρLdU²): mean,
 standard deviation, formula and source. The numbers are for the particulars of KVLCC2. L is the length, B the beam, d the
-draught, C_b the block coefficient, H_R the height and A_R the area of the rudder. `study list priors` makes the list for any
-ship. k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, J is the advance ratio of the straight approach. The regressions of Zhou (1983):
+draught, C_b the block coefficient, H_R the height and A_R the area of the rudder.
+
+The formulas use k = 2 d/L, m' = 2 C_b B/L, Λ = H_R²/A_R, and the advance ratio J of the straight approach. `study list
+priors` makes the list for any ship. These are the regressions of Zhou (1983):
 
     m_x'/m' = (.398 + 11.97 C_b (1 + 3.73 d/B) − 2.89 C_b L/B (1 + 1.13 d/B)
               + .175 C_b (L/B)² (1 + .541 d/B) − 1.107 L d/B²)/100
     m_y'/m' = .882 − .54 C_b (1 − 1.6 d/B) − .156 L/B (1 − .673 C_b)
               + .826 L d/B² (1 − .678 d/B) − .638 C_b L d/B² (1 − .669 d/B)
 
-Made by `cargo test -p study --test command_line write_the_reference -- --ignored`.
+This page is made by `cargo test -p study --test command_line write_the_reference -- --ignored`.
 
 ";
 
