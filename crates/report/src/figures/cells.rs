@@ -29,6 +29,8 @@ pub struct MapCell {
     pub interval: Option<[f64; 2]>,
     /// Outline of the cell; `None` without an outline.
     pub outline: Option<Outline>,
+    /// Number of trials behind the value; 0 if it is not known.
+    pub trials: u64,
 }
 
 /// Reason of an outline.

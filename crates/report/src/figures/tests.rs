@@ -164,6 +164,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         value: (!empty).then(|| size(x + y)),
         interval: Some([80.0, 95.0]),
         outline: if x == y { Some(Outline::Right) } else { (x == y + 1).then_some(Outline::Alias) },
+        trials: 0,
     };
     let map = |shades: Shades, count: usize| CellMap {
         titles: ["rudder step [°]".into(), "heading step [°]".into()],
@@ -344,13 +345,12 @@ fn large_type_leaves_a_heading_upright() {
 #[test]
 fn names_that_cannot_stand_side_by_side_are_turned() {
     let drawn = |name: &str| {
-        let cell = MapCell { value: Some(50.0), ..MapCell::default() };
         let map = CellMap {
             titles: ["named".into(), "missing".into()],
             columns: vec![name.into(); 12],
             rows: vec!["a".into()],
             shades: Shades::Shares,
-            panels: vec![(None, vec![vec![cell; 12]])],
+            panels: vec![(None, vec![vec![MapCell { value: Some(50.0), ..MapCell::default() }; 12]])],
             note: None,
         };
         Plot::from(map).draw("", &Theme::screen()).svg().matches("text-anchor=\"end\" transform=\"rotate(270").count()

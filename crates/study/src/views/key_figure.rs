@@ -8,7 +8,7 @@ use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
-use campaign::statistics::{distinct, grouped};
+use campaign::statistics::{distinct, grouped, wilson_share};
 
 use super::charts::{EXACT_NOTE, MIN_ERROR};
 use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
@@ -228,13 +228,19 @@ fn of_cells(data: &mut CellMap, highlight: &Highlight) {
     data.rows = parts.into_iter().map(|(name, _)| name).collect();
 }
 
-/// Mean of rows of a map, column by column; a single row is unchanged.
+/// Mean of rows of a map, column by column, with the interval of the share of all their trials; a single row is
+/// unchanged.
 fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
     let [first, further @ ..] = members else { return Vec::new() };
     let mean = |column: usize| {
         let values = members.iter().filter_map(|&row| panel[row][column].value).collect::<Vec<_>>();
         let value = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
-        MapCell { value, interval: None, ..panel[*first][column] }
+        let counted =
+            || members.iter().map(|&row| (panel[row][column].value.unwrap_or(0.0), panel[row][column].trials));
+        let positive = counted().map(|(share, trials)| 0.01 * share * trials as f64).sum::<f64>().round();
+        let interval = wilson_share(positive as u64, counted().map(|(_, trials)| trials).sum());
+        let interval = interval.and_then(|share| share.times(100.0).ci95);
+        MapCell { value, interval, ..panel[*first][column] }
     };
     if further.is_empty() { panel[*first].clone() } else { (0..panel[*first].len()).map(mean).collect() }
 }
@@ -373,7 +379,7 @@ mod tests {
 
     #[test]
     fn rows_of_a_map_that_are_alike_are_one() {
-        let row = |value: f64| vec![MapCell { value: Some(value), ..MapCell::default() }];
+        let row = |value: f64| vec![MapCell { value: Some(value), trials: 10, ..MapCell::default() }];
         let map = CellMap {
             titles: Default::default(),
             columns: vec!["right".into()],
@@ -387,6 +393,9 @@ mod tests {
         assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
         let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
         assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
+        // Wilson's interval of 19 of 20.
+        let interval = data.panels[0].1[0][0].interval.expect("of 20 trials");
+        assert!((interval[0] - 76.4).abs() < 0.1 && (interval[1] - 99.1).abs() < 0.1, "{interval:?}");
         let highlight = Highlight { rows: vec![String::from("known: c, right")], ..Highlight::default() };
         let Plot::Cells(data) = highlighted_chart(map.into(), &highlight) else { panic!() };
         assert_eq!(

@@ -55,6 +55,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
             value: share.map(|share| share.value),
             interval: share.and_then(|share| share.ci95),
             outline: judgement.is_right(lines[0].1).then_some(Outline::Right),
+            trials: trials(lines),
         }
     };
     let right = |name: &str| {

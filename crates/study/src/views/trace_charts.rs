@@ -73,6 +73,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
             value: Some(named.map_or(0.0, |share| share.value)),
             interval: named.and_then(|share| share.ci95),
             outline: if is_right { Some(Outline::Right) } else { is_alias.then_some(Outline::Alias) },
+            trials,
         }
     };
     let trials = |lines: &[&TraceSummary]| lines.iter().map(|line| line.trials).sum::<u64>();
