@@ -79,7 +79,12 @@ impl AxisSpec {
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
         match self.tick_rule {
             _ if !self.names.is_empty() => return (Axis::columns(&self.names), false),
-            TickRule::Logarithmic => return (Axis::log_covering(&data.positive()), false),
+            TickRule::Logarithmic => {
+                let axis = Axis::log_covering(&data.positive());
+                let (lo, hi) = axis.ends();
+                let is_beyond = |value: f64| value > 0.0 && value.is_finite() && !(lo..=hi).contains(&value);
+                return (axis, data.soft.iter().any(|(value, _)| is_beyond(*value)));
+            }
             TickRule::Percent => return (Axis::linear(-3.0, 103.0, TickRule::Percent), false),
             _ => {}
         }

@@ -75,7 +75,9 @@ pub(super) fn draw(chart: &Chart, layers: &[Layer], theme: &Theme) -> PlotResult
             let text = TextLine::new(label, theme.small_font, HPos::Center);
             let (width, height) = (text.width(), theme.small_font);
             // Shifts to the right or left, above or below, near or farther, in order of preference.
-            let shifts = [1.0, 2.0].into_iter().flat_map(|far| [[1.0, -far], [-1.0, -far], [1.0, far], [-1.0, far]]);
+            let shifts = [1.0, 2.0]
+                .into_iter()
+                .flat_map(|far| [[1.0, -far], [-1.0, -far], [1.0, far], [-1.0, far], [0.0, -far], [0.0, far]]);
             let at = |[right, down]: [f64; 2]| {
                 let farther = 0.7 * (down - down.signum()) * height;
                 let below = y + down.signum() * (theme.marker + 0.4 * height) + farther;

@@ -144,7 +144,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
         columns: boards.iter().map(column).collect(),
         note: Some(format!(
             "Score: {score}. Left of the line a method is better than {}. Medians over the cases; hollow: single cases if \
-             fewer than {MIN_SUMMARISED_VALUES}. Intervals need six independent records.",
+             fewer than {MIN_SUMMARISED_VALUES}. Equal values coincide. Intervals need six independent records.",
             results.reference
         )),
         ..NamedRows::default()

@@ -49,7 +49,10 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
         for (item, name) in
             column.rows.iter_mut().zip(&data.names).flat_map(|(row, name)| row.iter_mut().map(move |item| (item, name)))
         {
-            let RowKind::Violin(_, density, quantiles) = &item.kind else { continue };
+            let RowKind::Violin(look, density, quantiles) = &mut item.kind else { continue };
+            if !about.is_empty() && !about.contains(name) {
+                look.colour = tint(look.colour);
+            }
             if about.contains(name) {
                 column.included_values.extend(density.iter().map(|(value, _)| *value));
             }

@@ -71,21 +71,29 @@ pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [Oversh
     })
 }
 
+/// Note on the numbers, and on overshoots without a mark.
+fn note(all: &[ReplayedOvershoot]) -> String {
+    let is_partial = all.iter().any(|overshoot| overshoot.replayed.contains(&None));
+    let missing = if is_partial { " No mark: the replay has no such overshoot; it counts as missing." } else { "" };
+    format!("Numbers: errors.{missing}")
+}
+
 /// Figure of the first two overshoots of every zig-zag and of both replays, shaded if the rudder is no larger than in
 /// the fitted records; `None` if no record is a zig-zag.
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     // One mark above the other, so that both are visible.
-    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
+    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>, measured: f64| {
+        let number = Some(format!("{}°", significant((value? - measured).abs(), 2)));
         let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
-        Some(RowItem { place: RowPlace::Aside(aside), ..item })
+        Some(RowItem { place: RowPlace::Aside(aside), number, ..item })
     };
     let row = |overshoot: &ReplayedOvershoot| -> Vec<RowItem> {
         let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
         let items = [
             Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
             overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
-            mark("K and T alone", CurveOrigin::Before, -0.16, overshoot.replayed[0]),
-            mark("traced", CurveOrigin::After, 0.16, overshoot.replayed[1]),
+            mark("K and T alone", CurveOrigin::Before, -0.16, overshoot.replayed[0], overshoot.measured),
+            mark("traced", CurveOrigin::After, 0.16, overshoot.replayed[1], overshoot.measured),
         ];
         items.into_iter().flatten().collect()
     };
@@ -99,12 +107,11 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let seen = document.ship.validity_range.rudder_rad;
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
     let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
-    let is_partial = all.iter().any(|overshoot| overshoot.replayed.contains(&None));
     let data = NamedRows {
         names: all.iter().map(name).collect(),
         columns: vec![column],
         shaded,
-        note: is_partial.then(|| String::from("No mark: the replay has no such overshoot, which counts as missing.")),
+        note: Some(note(all)),
         ..NamedRows::default()
     };
     let held_out = document.records.iter().filter(|record| record.held_out).count();

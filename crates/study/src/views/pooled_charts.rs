@@ -250,6 +250,17 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
     vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::Beside, ..mark }]
 }
 
+/// Half width of the 95 % interval of a share of 90 % of the trials of a cell, in a sentence; empty for measured
+/// records, which differ in number. Characteristics of one trial may depend on each other, so it is a maximum.
+fn certainty(design: &Design) -> String {
+    let trials = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).min().unwrap_or(0);
+    if design.is_measured() || trials == 0 {
+        return String::new();
+    }
+    let half_width = 100.0 * NORMAL_QUANTILE * (0.9 * 0.1 / trials as f64).sqrt();
+    format!(" 95 % interval of a share of 90 %: at most ±{half_width:.0} points.")
+}
+
 /// Coverage and width of 90 % prediction intervals, by row and method: the mean share and the median width over the
 /// predicted characteristics, on the range of the shares and of the middle half of the widths; `None` without
 /// predictions.
@@ -293,9 +304,10 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRo
             ),
             column(AxisSpec::new("width [% of value]", TickRule::Logarithmic), width, 25, Vec::new()),
         ],
-        note: Some(String::from(
-            "Over the predicted overshoots, times and turns. Marks: mean share, median width. Pale: from the worst to the \
-             best share, the middle half of the widths.",
+        note: Some(format!(
+            "Over the predicted overshoots, times and turns. Marks: mean share, median width. Bands: from the worst to the \
+             best share, the middle half of the widths.{}",
+            certainty(design)
         )),
         ..NamedRows::default()
     })
