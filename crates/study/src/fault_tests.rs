@@ -23,6 +23,7 @@ replicates = 3
 ship.yukun = {}
 manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }
 recording = { sampling-s = 4.0, duration-s = 120.0 }
+output.figure = "errors"
 [[identifier]]
 method.integral-least-squares = {}
 [[sweep]]
@@ -39,10 +40,10 @@ fn quiet(out: Option<&Path>) -> CommonOptions {
     CommonOptions { out: out.map(Path::to_owned), threads: None, seed: None, quiet: true, format: Format::Text }
 }
 
-/// Style of small figures, which take little time.
+/// One small figure, which takes little time.
 const STYLE: StudyFigureOptions = StudyFigureOptions {
     style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
-    figures: FigureChoice::Named,
+    figures: FigureChoice::Hero,
 };
 
 fn report_of(folder: &Path) -> ReportRequest {
