@@ -91,6 +91,15 @@ fn finding(boards: &[&Leaderboard], reference: &str) -> String {
     }
 }
 
+/// Columns with one scale.
+fn share_scale(mut columns: Vec<RowsColumn>) -> Vec<RowsColumn> {
+    let marks = columns.iter().flat_map(|column| &column.rows).flatten();
+    let values = marks.filter_map(|item| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None });
+    let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    columns.iter_mut().for_each(|column| column.included_values.clone_from(&values));
+    columns
+}
+
 fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let mut rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
@@ -141,7 +150,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     };
     Some(NamedRows {
         names: rivals.iter().map(|method| (*method).clone()).collect(),
-        columns: boards.iter().map(column).collect(),
+        columns: share_scale(boards.iter().map(column).collect()),
         note: Some(format!(
             "Score: {score}. Left of the line a method is better than {}. Medians over the cases; hollow: single cases if \
              fewer than {MIN_SUMMARISED_VALUES}. Equal values coincide. Intervals need six independent records.",

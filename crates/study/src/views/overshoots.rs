@@ -71,6 +71,29 @@ pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [Oversh
     })
 }
 
+/// Angle in degrees as text.
+fn degrees(angle: Option<f64>) -> String {
+    angle.map_or_else(|| MISSING.to_owned(), |angle| format!("{}°", significant(angle, 2)))
+}
+
+/// Items of the row of an overshoot: measured bar, limit and both replays, each with its error as a number.
+fn row_items(overshoot: &ReplayedOvershoot) -> Vec<RowItem> {
+    // One mark above the other, so that both are visible.
+    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
+        let number = Some(degrees(Some((value? - overshoot.measured).abs())));
+        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
+        Some(RowItem { place: RowPlace::Aside(aside), number, ..item })
+    };
+    let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
+    let items = [
+        Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
+        overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
+        mark("K and T alone", CurveOrigin::Before, -0.16, overshoot.replayed[0]),
+        mark("traced", CurveOrigin::After, 0.16, overshoot.replayed[1]),
+    ];
+    items.into_iter().flatten().collect()
+}
+
 /// Note on the numbers, and on overshoots without a mark.
 fn note(all: &[ReplayedOvershoot]) -> String {
     let is_partial = all.iter().any(|overshoot| overshoot.replayed.contains(&None));
@@ -81,23 +104,12 @@ fn note(all: &[ReplayedOvershoot]) -> String {
 /// Figure of the first two overshoots of every zig-zag and of both replays, shaded if the rudder is no larger than in
 /// the fitted records; `None` if no record is a zig-zag.
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
-    // One mark above the other, so that both are visible.
-    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>, measured: f64| {
-        let number = Some(format!("{}°", significant((value? - measured).abs(), 2)));
-        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
-        Some(RowItem { place: RowPlace::Aside(aside), number, ..item })
-    };
-    let row = |overshoot: &ReplayedOvershoot| -> Vec<RowItem> {
-        let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
-        let items = [
-            Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
-            overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
-            mark("K and T alone", CurveOrigin::Before, -0.16, overshoot.replayed[0], overshoot.measured),
-            mark("traced", CurveOrigin::After, 0.16, overshoot.replayed[1], overshoot.measured),
-        ];
-        items.into_iter().flatten().collect()
-    };
-    let rows = all.iter().map(row).collect();
+    let held_out = document.records.iter().filter(|record| record.held_out).count();
+    let errors = errors_before_after(all, held_out > 0);
+    let medians = errors
+        .iter()
+        .map(|error| RowItem { number: Some(degrees(error.median_deg)), ..RowItem::new("", RowKind::Heading) });
+    let rows = all.iter().map(row_items).chain([medians.collect()]).collect();
     let column = RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
     let name = |overshoot: &ReplayedOvershoot| {
         let used = if overshoot.record.held_out { "" } else { " (fitted)" };
@@ -108,19 +120,22 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
     let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
     let data = NamedRows {
-        names: all.iter().map(name).collect(),
+        names: all
+            .iter()
+            .map(name)
+            .chain([String::from(if held_out > 0 { "median, not fitted" } else { "median" })])
+            .collect(),
         columns: vec![column],
         shaded,
         note: Some(note(all)),
         ..NamedRows::default()
     };
-    let held_out = document.records.iter().filter(|record| record.held_out).count();
     let error_words = |error: OvershootError| {
-        let off = error.median_deg.map_or_else(|| MISSING.to_owned(), |off| format!("{}°", significant(off, 2)));
+        let off = degrees(error.median_deg);
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
         (off, missing, error.measured)
     };
-    let [(before, no_before, count), (after, no_after, _)] = errors_before_after(all, held_out > 0).map(error_words);
+    let [(before, no_before, count), (after, no_after, _)] = errors.map(error_words);
     let of_records = match held_out {
         0 => String::new(),
         records => format!(" of {} that were not fitted", counted(records as u64, "record")),

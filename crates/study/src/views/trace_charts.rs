@@ -117,9 +117,6 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?, counts))
 }
 
-/// Minimum upper end of the axis of false names, per cent: a small share is to look small.
-const FALSE_NAMES_AXIS: f64 = 20.0;
-
 /// Share of false names of several traces on ships without a missing effect, with the bound for this number of trials;
 /// `None` for one trace, or if a ship lacks an effect.
 pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
@@ -157,7 +154,6 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
         x: AxisSpec::decimal("trials with a false name [%]"),
         rows: rules.iter().map(row).collect::<Option<_>>()?,
         zero: true,
-        included_values: vec![FALSE_NAMES_AXIS],
         ..RowsColumn::default()
     };
     Some(NamedRows {
