@@ -124,7 +124,7 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
         for item in row {
             let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
             let is_quiet = look.colour == QUIET;
-            if !is_quiet && !(is_long && is_pale) {
+            if !(is_quiet || is_long && is_pale) {
                 item.number = Some(match limit {
                     Some(limit) => format!("{}×", significant(*value / limit, 2)),
                     None if unit.is_empty() => fixed(*value, 2),
