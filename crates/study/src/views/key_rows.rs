@@ -79,16 +79,16 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
     data.names.iter().any(|name| is_pale(name, rows)).then(|| String::from("Dark: the rows of the title."))
 }
 
-/// `true` for a row that is neither highlighted nor the row of all cells.
+/// `true` for a row that is not highlighted.
 fn is_pale(name: &str, about: &[String]) -> bool {
     let label = name.split_once(COUNT).map_or(name, |(label, _)| label);
-    label != ALL_CELLS_ROW && !about.iter().any(|row| row == label)
+    !about.iter().any(|row| row == label)
 }
 
 /// Moves the highlighted rows up, below the row of all cells.
 fn sort_rows(data: &mut NamedRows, about: &[String]) {
     let mut order: Vec<usize> = (0..data.names.len()).collect();
-    order.sort_by_key(|&row| is_pale(&data.names[row], about));
+    order.sort_by_key(|&row| data.names[row] != ALL_CELLS_ROW && is_pale(&data.names[row], about));
     data.names = order.iter().map(|&row| data.names[row].clone()).collect();
     for column in &mut data.columns {
         column.rows = order.iter().map(|&row| std::mem::take(&mut column.rows[row])).collect();

@@ -250,11 +250,14 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
     vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::Beside, ..mark }]
 }
 
-/// Half width of the 95 % interval of a share of 90 % of the trials of a cell, in a sentence; empty for measured
-/// records, which differ in number. Characteristics of one trial may depend on each other, so it is a maximum.
+/// Half width of the 95 % interval of a share of 90 % of the trials of a cell, in a sentence; measured records
+/// are not independent. Characteristics of one trial may depend on each other, so it is a maximum.
 fn certainty(design: &Design) -> String {
     let trials = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).min().unwrap_or(0);
-    if design.is_measured() || trials == 0 {
+    if design.is_measured() {
+        return String::from(" Records of one ship are not independent: no intervals.");
+    }
+    if trials == 0 {
         return String::new();
     }
     let half_width = 100.0 * NORMAL_QUANTILE * (0.9 * 0.1 / trials as f64).sqrt();
