@@ -9,7 +9,7 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 69_906,
+    code: 69_907,
     tests: 31_619,
     long_functions: 0,
     shared_types: 7,
@@ -18,7 +18,7 @@ const REACHED: Size = Size {
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 11_627,
+    largest_crate: 11_624,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.

@@ -2,7 +2,7 @@
 //! columns if they share both, as small multiples if all are alike, side by side if they share none. A figure is data;
 //! [`super::layers`] draws it.
 
-use super::reach::{AxisReach, Extents};
+use super::reach::{AxisReach, Extents, MAX_INTERVAL_SHARE};
 use super::shared::{Reference95, record_symbol};
 pub use crate::axis::TickRule;
 
@@ -83,7 +83,9 @@ impl AxisSpec {
                 let axis = Axis::log_covering(&data.positive());
                 let (lo, hi) = axis.ends();
                 let is_beyond = |value: f64| value > 0.0 && value.is_finite() && !(lo..=hi).contains(&value);
-                return (axis, data.soft.iter().any(|(value, _)| is_beyond(*value)));
+                // An interval that is cut ends at the frame without a cap.
+                let layers = data.soft.iter().filter(|(_, room)| *room != MAX_INTERVAL_SHARE);
+                return (axis, layers.map(|(value, _)| *value).any(is_beyond));
             }
             TickRule::Percent => return (Axis::linear(-3.0, 103.0, TickRule::Percent), false),
             _ => {}

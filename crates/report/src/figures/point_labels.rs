@@ -93,7 +93,10 @@ pub(super) fn draw(chart: &Chart, layers: &[Layer], theme: &Theme) -> PlotResult
                 let beyond = if corners.into_iter().all(|corner| frame.contains(corner)) { 0.0 } else { BEYOND };
                 obstacles.cost(place(at(shift), CLEARANCE * height)) + beyond + FAR * (shift[1].abs() - 1.0)
             };
-            let middle = shifts.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).map_or((x, y), at);
+            let middle = shifts
+                .map(|shift| (cost(shift), at(shift)))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .map_or((x, y), |(_, at)| at);
             chart.canvas.text_with_halo(middle, &text)?;
             obstacles.0.push(([(middle.0 - 0.5 * width, middle.1), (middle.0 + 0.5 * width, middle.1)], LABEL));
         }

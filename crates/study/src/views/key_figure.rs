@@ -101,6 +101,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
     let (mut are_exact, mut are_cut, mut are_low, mut are_missing) = (false, false, false, false);
+    let mut has_grey = false;
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for stack in &mut data.stacks {
         if stack.columns.is_some() {
@@ -119,6 +120,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
             are_cut |= quiet.iter().any(|layer| layer.curve.y.iter().any(|y| y.is_infinite()));
+            has_grey |= !quiet.is_empty();
             are_missing |= quiet.len() < quiet_names.len();
             are_low |= quiet.iter().any(|layer| layer.curve.y.contains(&MIN_ERROR));
             panel.layers = paled(quiet, &quiet_names);
@@ -140,7 +142,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     notes.extend(are_cut.then(|| String::from("Grey lines end where an error exceeds 100 %.")));
     notes.extend(are_low.then(|| String::from("Grey lines leave at the bottom where they are exact.")));
     notes.extend(are_missing.then(|| String::from("Methods without an answer have no line.")));
-    data.clipping_note = Some(String::from("Some grey lines lie beyond the axes."));
+    data.clipping_note = has_grey.then(|| String::from("Some grey lines lie beyond the axes."));
     (!notes.is_empty()).then(|| notes.join(" "))
 }
 

@@ -5,12 +5,13 @@ use document::names;
 use document::trace::{RecordEntry, TraceDocument};
 use estimation::statistics::median;
 use report::figures::{AxisSpec, NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-use report::number::{MISSING, counted, significant};
+use report::number::{MISSING, counted};
 use report::palette::{Look, Marker};
 use report::{CurveOrigin, PageFigure};
 use ship::angle::to_deg;
 use trial::{ZigZag, imo};
 
+use super::record_study::degrees;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// First or second overshoot of a record, measured and replayed, degrees; only these two have an IMO limit.
@@ -71,16 +72,11 @@ pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [Oversh
     })
 }
 
-/// Angle in degrees as text.
-fn degrees(angle: Option<f64>) -> String {
-    angle.map_or_else(|| MISSING.to_owned(), |angle| format!("{}°", significant(angle, 2)))
-}
-
 /// Items of the row of an overshoot: measured bar, limit and both replays, each with its error as a number.
 fn row_items(overshoot: &ReplayedOvershoot) -> Vec<RowItem> {
     // One mark above the other, so that both are visible.
     let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
-        let number = Some(degrees(Some((value? - overshoot.measured).abs())));
+        let number = Some(degrees((value? - overshoot.measured).abs()));
         let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
         Some(RowItem { place: RowPlace::Aside(aside), number, ..item })
     };
@@ -106,9 +102,10 @@ fn note(all: &[ReplayedOvershoot]) -> String {
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     let held_out = document.records.iter().filter(|record| record.held_out).count();
     let errors = errors_before_after(all, held_out > 0);
-    let medians = errors
-        .iter()
-        .map(|error| RowItem { number: Some(degrees(error.median_deg)), ..RowItem::new("", RowKind::Heading) });
+    let medians = errors.iter().map(|error| RowItem {
+        number: Some(error.median_deg.map_or_else(|| MISSING.to_owned(), degrees)),
+        ..RowItem::new("", RowKind::Heading)
+    });
     let rows = all.iter().map(row_items).chain([medians.collect()]).collect();
     let column = RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
     let name = |overshoot: &ReplayedOvershoot| {
@@ -131,7 +128,7 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         ..NamedRows::default()
     };
     let error_words = |error: OvershootError| {
-        let off = degrees(error.median_deg);
+        let off = error.median_deg.map_or_else(|| MISSING.to_owned(), degrees);
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
         (off, missing, error.measured)
     };

@@ -2,7 +2,7 @@
 //! was requested.
 
 use campaign::design::{CellFacts, Design};
-use campaign::statistics::{Statistic, distinct, grouped};
+use campaign::statistics::{NORMAL_QUANTILE_95, Statistic, distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
 use report::figures::{
@@ -100,9 +100,6 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     summary.details.iter().filter_map(of_cell).collect()
 }
 
-/// 97.5 % quantile of the standard normal distribution.
-const NORMAL_QUANTILE: f64 = 1.96;
-
 /// Half width of the axes of clouds, in median sizes of the ellipses.
 const REACH: f64 = 2.2;
 
@@ -152,7 +149,7 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
             "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}. 95 % \
              intervals of the multiples of the bound: ±{:.1} %.",
             // Of a standard deviation of that many normal errors.
-            100.0 * NORMAL_QUANTILE / (2.0 * trials as f64).sqrt()
+            100.0 * NORMAL_QUANTILE_95 / (2.0 * trials as f64).sqrt()
         );
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
@@ -260,7 +257,7 @@ fn certainty(design: &Design) -> String {
     if trials == 0 {
         return String::new();
     }
-    let half_width = 100.0 * NORMAL_QUANTILE * (0.9 * 0.1 / trials as f64).sqrt();
+    let half_width = 100.0 * NORMAL_QUANTILE_95 * (0.9 * 0.1 / trials as f64).sqrt();
     format!(" 95 % interval of a share of 90 %: at most ±{half_width:.0} points.")
 }
 

@@ -179,7 +179,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
 }
 
 /// Angle, deg, with two significant digits and the sign of a degree.
-fn degrees(value: f64) -> String {
+pub fn degrees(value: f64) -> String {
     format!("{}°", significant(value, 2))
 }
 

@@ -272,17 +272,14 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         true => line.cell,
         false => (RANGES_PER_DECADE * expected(line).log10()) as usize,
     };
-    let points = |(name, lines)| {
-        let ranges = grouped::<_, &TraceSummary>(lines, range);
-        (name, ranges.iter().filter_map(|(_, lines)| point(lines)).collect())
-    };
-    let counts = grouped(shown.iter().copied(), |line| (name(line), range(line))).into_iter();
-    let counts: Vec<u64> = counts.map(|(_, lines)| lines.iter().map(|line| line.trials).sum()).collect();
+    let marks = grouped(shown.iter().copied(), |line| (name(line), range(line)));
+    let counts: Vec<u64> = marks.iter().map(|(_, lines)| lines.iter().map(|line| line.trials).sum()).collect();
     let note = format!(
         "{} trials at each mark. Λ: likelihood ratio of the truth to a first-order response.",
         count_range(&counts)
     );
-    let series = grouped(shown.iter().copied(), name).into_iter().map(points).collect();
+    let series = grouped(marks, |((name, _), _)| name.clone()).into_iter();
+    let series = series.map(|(name, marks)| (name, marks.iter().filter_map(|(_, lines)| point(lines)).collect()));
     let largest = shown.iter().map(|line| expected(line)).reduce(f64::max)?;
     let theory = PARAMETERS.map(|freedom| {
         let limit = NAMING_SUPPORT + f64::from(freedom) * TYPICAL_ROWS.ln();
@@ -293,7 +290,7 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
         (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
     });
     let x = AxisSpec::new("size of the effect: expected 2 ln Λ", TickRule::Logarithmic);
-    let data = shares(x, "trials in which it is named [%]", series, theory.into());
+    let data = shares(x, "trials in which it is named [%]", series.collect(), theory.into());
     Some(Panels { note: Some(note), ..data })
 }
 
