@@ -40,7 +40,7 @@ fn the_published_leaderboards_follow_from_the_stored_answers() {
     // The figures themselves, by another way: half of the scores are not larger, half are not smaller.
     for board in &results.boards {
         let cases: Vec<&BenchCase> =
-            results.cases.iter().filter(|case| case.task == board.task && case.field == board.field).collect();
+            results.cases.iter().filter(|case| case.task == board.task && case.study == board.study).collect();
         for standing in &board.standings {
             let scores: Vec<f64> = cases.iter().filter_map(|case| case.method_score(&standing.method)).collect();
             let median = standing.median.value.unwrap_or(f64::INFINITY);

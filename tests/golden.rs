@@ -88,9 +88,18 @@ fn a_small_study_has_the_table_it_had() {
     let table = summary::summarise(&rows, &design).methods;
     assert_eq!(table.len(), TABLE.len());
     for (line, (method, expected)) in table.iter().zip(TABLE) {
-        let record = &line.record;
-        assert_eq!((design.methods[line.method].label.as_str(), record.trials, record.failed()), (method, 6, 0));
-        let found = [record.k.median, record.k.rms, record.t.median, record.t.rms, record.heading_rmse_deg];
+        let performance = &line.performance;
+        assert_eq!(
+            (design.methods[line.method].label.as_str(), performance.trials, performance.failed()),
+            (method, 6, 0)
+        );
+        let found = [
+            performance.k.median,
+            performance.k.rms,
+            performance.t.median,
+            performance.t.rms,
+            performance.heading_rmse_deg,
+        ];
         let found = found.map(|figure| figure.expect("every trial was identified").value);
         let agree = found.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() < 1e-7);
         assert!(agree, "{method}: {found:?}, was {expected:?}");

@@ -297,8 +297,12 @@ fn check_answer(method: &dyn Identifier, trial: &Trial, when: &str) {
                 let errors = quantity.sd.into_iter().chain(quantity.ci95.into_iter().flatten());
                 assert!(errors.into_iter().all(f64::is_finite), "{id} with {when}: {quantity:?}");
             }
-            let robust = found.robust.iter().flat_map(|covariance| &covariance.matrix);
-            assert!(robust.into_iter().all(|value| value.is_finite()), "{id} with {when}: {:?}", found.robust);
+            let robust = found.robust_covariance.iter().flat_map(|covariance| &covariance.matrix);
+            assert!(
+                robust.into_iter().all(|value| value.is_finite()),
+                "{id} with {when}: {:?}",
+                found.robust_covariance
+            );
             let undefined = found.diagnostics.iter().find(|(_, value)| !value.is_finite());
             assert!(undefined.is_none(), "{id} with {when}: {undefined:?}");
         }
@@ -353,7 +357,7 @@ fn covariances_are_positive_definite_and_intervals_hold_the_estimate() {
         for trials in [vec![one.clone()], vec![one, other]] {
             let found = identify(method.as_ref(), &trials);
             let mut quantities = vec![found.K(), found.T(), found.rudder_bias()];
-            let robust = found.robust.iter().map(|covariance| covariance.indices(&found.response));
+            let robust = found.robust_covariance.iter().map(|covariance| covariance.indices(&found.response));
             quantities.extend(robust.flat_map(|(k, t)| [k, t]));
             quantities.iter().for_each(|quantity| assert_encloses(method.id(), quantity));
             match &found.uncertainty {
@@ -365,7 +369,7 @@ fn covariances_are_positive_definite_and_intervals_hold_the_estimate() {
                 Uncertainty::Intervals { meaning, .. } => assert!(!meaning.is_empty()),
                 Uncertainty::None { reason } => assert!(!reason.is_empty()),
             }
-            if let Some(robust) = &found.robust {
+            if let Some(robust) = &found.robust_covariance {
                 assert_positive_definite(method.id(), robust);
             }
             assert!(found.evaluations > 0, "{}", method.id());

@@ -12,7 +12,7 @@ use kempf_tests::records::{Case, zig_zag};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
-use ship::vessel::mmg::{Mmg, Parameters, Propeller, Rudder};
+use ship::vessel::mmg::{Mmg, MmgParameters, Propeller, Rudder};
 use simulate::{SimulatedShip, StreamKey, Truth};
 
 /// Scale of the KVLCC2 model of HSVA; time goes with its square root.
@@ -72,8 +72,8 @@ fn methods_find_the_same_ship_on_any_clock() {
 }
 
 /// A hull reduced in size `scale` times, every length and area with it.
-fn reduced(parameters: &Parameters, scale: f64) -> Parameters {
-    Parameters {
+fn reduced(parameters: &MmgParameters, scale: f64) -> MmgParameters {
+    MmgParameters {
         Lpp: parameters.Lpp / scale,
         d: parameters.d / scale,
         volume: parameters.volume / scale.powi(3),
@@ -84,7 +84,7 @@ fn reduced(parameters: &Parameters, scale: f64) -> Parameters {
     }
 }
 
-fn hull_zig_zag(parameters: Parameters, scale: f64) -> Arc<Truth> {
+fn hull_zig_zag(parameters: MmgParameters, scale: f64) -> Arc<Truth> {
     let (time, speed) = (scale.sqrt().recip(), 7.97 / scale.sqrt());
     let hull = Mmg::at_speed(parameters, speed).expect("the set balances at any size");
     let mut simulation =

@@ -6,7 +6,7 @@ use kempf_tests::records::zig_zag;
 use ship::angle::{from_deg, to_deg};
 use ship::ships::{self, ShipModel, kvlcc2, mariner, seiun_like, tanker};
 use ship::vessel::abkowitz::Abkowitz;
-use ship::vessel::mmg::{BySign, Mmg, Parameters, Wake};
+use ship::vessel::mmg::{BySign, Mmg, MmgParameters, Wake};
 use ship::{FirstOrder, Particulars, Polyline, Ship};
 use simulate::disturbance::{GaussMarkov, Squall, WaveSpectrum, Wind};
 use simulate::{Disturbances, Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamKey, Truth};
@@ -89,7 +89,7 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
 }
 
 /// The same hull with the coefficients of both sides equal.
-fn evened(mut parameters: Parameters) -> Parameters {
+fn evened(mut parameters: MmgParameters) -> MmgParameters {
     let even = |by_sign: BySign| BySign { positive: by_sign.mean(), negative: by_sign.mean() };
     parameters.rudder.gammaR = even(parameters.rudder.gammaR);
     if let Wake::Exponential { C2, .. } = &mut parameters.propeller.wake {

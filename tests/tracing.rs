@@ -199,7 +199,8 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
         (Channel::WindRelativeFrom, |t| 0.8 + 0.7 * (0.031 * t).sin()),
     ];
     let free_stream = SpeedLoss::Measured { approach_speed: 5.0 };
-    let inflow = SpeedLoss::Inflow { approach_speed: 5.0, approach_rate: 2.0 };
+    let inflow = SpeedLoss::Inflow { approach_speed: 5.0, approach_revolutions: 2.0 };
+    let propeller_inflow = SpeedLoss::Propeller { approach_revolutions: 2.0 };
     [
         (
             (find("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
@@ -208,7 +209,7 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
         ),
         ((Arc::new(free_stream), vec![0.5, 1.2]), vec![speed], "inflow share"),
         ((Arc::new(inflow), vec![1.0, 0.5, 0.5]), vec![speed, propeller], "inflow share"),
-        ((Arc::new(SpeedLoss::Propeller { approach_rate: 2.0 }), vec![1.5]), vec![propeller], "measured propeller"),
+        ((Arc::new(propeller_inflow), vec![1.5]), vec![propeller], "measured propeller"),
         ((listed_effect("wind_moment", "measured wind"), vec![4e-4]), wind.to_vec(), "measured wind"),
     ]
 }
@@ -350,7 +351,7 @@ fn what_no_candidate_carries_is_seen() {
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     let document = &analysis.document;
     assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
-    assert_eq!(document.located[0].depends_on, Dependence::Way, "{:?}", document.located);
+    assert_eq!(document.located[0].depends_on, Dependence::LateralDistance, "{:?}", document.located);
     assert!(document.unexplained.signature.is_some() && !document.unexplained.present && document.effects.is_empty());
     assert!(document.headline.starts_with("The missing yaw moment depends on way to one side (moment with "));
 }
@@ -367,10 +368,10 @@ fn one_amplitude_is_blind_for_stall_and_two_are_not() {
     };
     assert_eq!((names(&alone), outcome(&alone)), (Vec::new(), Some(Outcome::NotObservable)));
     let planned = [("10/10 again".to_owned(), small.clone()), ("30/30".to_owned(), large.clone())];
-    let prospects = alone.prospects(&planned);
-    assert_eq!(prospects[0].name, "30/30");
-    assert!(prospects[0].revealed.iter().any(|name| name.contains("rudder saturation")), "{:?}", prospects[0]);
-    assert!(prospects[1].unobservable.iter().any(|name| name.contains("rudder saturation")), "{:?}", prospects[1]);
+    let values = alone.planned_trial_values(&planned);
+    assert_eq!(values[0].name, "30/30");
+    assert!(values[0].revealed.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[0]);
+    assert!(values[1].unobservable.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[1]);
     let both = analysed(&[small, large], &[]);
     assert!(is_named(&both, "rudder_saturation"), "named {:?}", names(&both));
 }

@@ -85,7 +85,7 @@ fn records_filled_by_a_zig_zag_are_taken_whole() {
         let ends = (table.time[0], table.time[table.time.len() - 1]);
         assert_eq!((found.from, found.until), ends, "{file}");
         let row = 1.01 * (table.time[1] - table.time[0]);
-        assert!((found.start - start).abs() < row, "{file}: starts at {}", found.start);
+        assert!((found.first_execute - start).abs() < row, "{file}: starts at {}", found.first_execute);
         assert_eq!(found.quality.remarks(), [""; 0], "{file}");
     }
 }
@@ -98,6 +98,6 @@ fn a_turning_circle_is_followed_by_its_pull_out() {
     let names: Vec<String> = found.iter().map(|found| found.name()).collect();
     assert_eq!(names, ["turning circle 35 to port", "pull-out"]);
     assert_eq!(found[0].from, 0.0);
-    assert!((found[0].start - 4.1).abs() < 0.6 && (found[0].until - 1513.0).abs() < 1.1, "{found:?}");
+    assert!((found[0].first_execute - 4.1).abs() < 0.6 && (found[0].until - 1513.0).abs() < 1.1, "{found:?}");
     assert!(found[1].from > found[0].until && found[1].from - found[0].until < 0.6);
 }

@@ -114,7 +114,10 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
             let flipped = changed(Channel::Rudder, -1.0);
             if stem.starts_with("zigzag") {
                 zig_zags += 1;
-                assert!(matches!(flipped, Err(plausibility::Implausible::RudderFlipped { .. })), "{stem} {flipped:?}");
+                assert!(
+                    matches!(flipped, Err(plausibility::Implausibility::RudderFlipped { .. })),
+                    "{stem} {flipped:?}"
+                );
             } else {
                 assert!(
                     flipped.expect("a turning circle alone is no proof")[0].text.contains("looks flipped"),

@@ -29,7 +29,7 @@ impl Block {
         scenario.cells.len() as u64 * Self::count_in_cell(scenario.replicates)
     }
 
-    /// Block number `place` of a scenario, counted cell by cell from 0.
+    /// Block at index `place` among all blocks of a scenario, counted cell by cell from 0.
     pub fn from_index(place: u64, scenario: &Scenario) -> Self {
         let of_cell = Self::count_in_cell(scenario.replicates);
         Self { cell: (place / of_cell) as usize, number: place % of_cell }
@@ -45,14 +45,14 @@ impl Block {
         Self { cell: task.cell, number: task.replicate / Self::REPLICATES }
     }
 
-    /// Replicates of the block in a cell with `replicates` replicates.
+    /// Indices of the replicates of the block in a cell with `replicates` replicates; empty for a block beyond them.
     pub fn replicate_range(self, replicates: u64) -> Range<u64> {
         let start = self.number * Self::REPLICATES;
         start..replicates.min(start + Self::REPLICATES)
     }
 }
 
-/// Stem of the file name, `CELL-NUMBER`.
+/// Stem of the file name: `CELL-NUMBER`, each with at least four digits.
 impl fmt::Display for Block {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:04}-{:04}", self.cell, self.number)

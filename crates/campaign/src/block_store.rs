@@ -17,7 +17,7 @@ use crate::files::{ROWS_FOLDER, TIMINGS_FOLDER};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
-use crate::rows::{BlockLabel, Damage, RowLayout, StudyRow, decode, encode};
+use crate::rows::{BlockFileError, BlockLabel, RowLayout, StudyRow, decode, encode};
 use crate::timings::Timings;
 
 /// Maximum size of a file of a block, bytes.
@@ -34,7 +34,7 @@ pub struct BlockStore<'a> {
 }
 
 impl<'a> BlockStore<'a> {
-    /// Store of the blocks that the program named in a manifest computes.
+    /// Store in a folder for the blocks of the study and the program that a manifest names.
     pub fn new(folder: &Path, manifest: &Manifest, design: &'a Design) -> Self {
         Self {
             folder: folder.to_owned(),
@@ -65,8 +65,8 @@ impl<'a> BlockStore<'a> {
         let Some(bytes) = disk::read(&path, MAX_BLOCK_BYTES).on("read", &path)? else { return Ok(Ok(Vec::new())) };
         match decode(bytes, &self.label(block), &self.layout) {
             Ok(rows) => Ok(Ok(rows)),
-            Err(Damage::Changed(problem)) => Ok(Err(format!("{}: {problem}", path.display()))),
-            Err(Damage::Foreign(label)) => Err(Failure::in_file(&path, self.foreign(&label))),
+            Err(BlockFileError::Changed(problem)) => Ok(Err(format!("{}: {problem}", path.display()))),
+            Err(BlockFileError::OtherBlock(label)) => Err(Failure::in_file(&path, self.foreign(&label))),
         }
     }
 
@@ -103,7 +103,7 @@ impl<'a> BlockStore<'a> {
         becomes: &str,
         observer: &dyn Observer,
     ) -> Result<HashMap<Block, u64>, Failure> {
-        let trials = |rows: Vec<StudyRow>| (rows.len() / self.layout.methods()) as u64;
+        let trials = |rows: Vec<StudyRow>| (rows.len() / self.layout.method_count()) as u64;
         let look = |block: Block| match self.read(block)? {
             Ok(rows) => Ok(Some((block, trials(rows)))),
             Err(problem) => {
@@ -145,7 +145,7 @@ impl<'a> BlockStore<'a> {
         let blocks: Vec<(Block, u64)> = self.design_blocks().collect();
         let whole = |&(block, trials): &(Block, u64)| {
             let content = self.read(block)?;
-            let expected = trials as usize * self.layout.methods();
+            let expected = trials as usize * self.layout.method_count();
             let rows = content.and_then(|rows| match rows.len() == expected {
                 true => Ok(rows),
                 false => Err(format!("{}: the block is missing or incomplete", self.path(block).display())),
@@ -170,10 +170,10 @@ fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
         return Ok(Vec::new());
     }
     let names = disk::names(&rows).on("list", &rows)?;
-    Ok(names.iter().filter_map(|name| stem_of(name, "parquet")).collect())
+    Ok(names.iter().filter_map(|name| block_from_file_name(name, "parquet")).collect())
 }
 
-/// `true` if a folder contains blocks.
+/// `true` if a folder contains blocks, of any study. Fails if it cannot be listed.
 pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
     Ok(!blocks_in(folder)?.is_empty())
 }
@@ -182,7 +182,7 @@ pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
 pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS_FOLDER, "parquet"), (TIMINGS_FOLDER, "csv")] {
         if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
-            folder.subfolder(name)?.remove_matching(|file| stem_of(file, extension).is_some())?;
+            folder.subfolder(name)?.remove_matching(|file| block_from_file_name(file, extension).is_some())?;
         }
     }
     Ok(())
@@ -196,8 +196,8 @@ fn timings_name(block: Block) -> String {
     format!("{block}.csv")
 }
 
-/// Block of a file name; `None` for any other file.
-fn stem_of(name: &str, extension: &str) -> Option<Block> {
+/// Block whose file has this name; `None` for a name that is not of a block.
+fn block_from_file_name(name: &str, extension: &str) -> Option<Block> {
     let (cell, number) = name.strip_suffix(extension)?.strip_suffix('.')?.split_once('-')?;
     let block = Block { cell: cell.parse().ok()?, number: number.parse().ok()? };
     (name == format!("{block}.{extension}")).then_some(block)

@@ -46,15 +46,15 @@ pub fn cramer_rao_bound<'a>(
     bound.iter().all(|sd| sd.is_finite()).then_some((bound, percent2))
 }
 
-/// Covariance bound of 1/T (1/s), K/T (1/s²) and K δ_r/T (rad/s²) for one record with unknown initial state; `None` as
-/// in [`cramer_rao_bound`].
+/// Cramér–Rao bound on the covariance of 1/T (1/s), K/T (1/s²) and K δ_r/T (rad/s²) for one record with unknown
+/// initial state; `None` as in [`cramer_rao_bound`].
 fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstOrder) -> Option<Matrix3<f64>> {
-    let white = simulation.sensors.declared_noise().heading;
+    let white = simulation.sensors.declared_noise().heading_sd;
     let wander = simulation.sensors.heading_wander.filter(|wander| wander.sd > 0.0);
     let compass = match (white, wander) {
         (white, None) => NoiseModel::compass(white?),
         (_, Some(GaussMarkov { sd, correlation_time })) => {
-            NoiseModel { heading_correlation: Some(correlation_time), ..NoiseModel::compass(sd) }
+            NoiseModel { heading_correlation_time: Some(correlation_time), ..NoiseModel::compass(sd) }
         }
     };
     let noise = noise(simulation, truth, compass)?;
@@ -77,7 +77,7 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Op
     let read = recording.rudder == RudderSource::Feedback;
     // The simulation states a moment as the rudder angle of equal moment, the likelihood as a yaw acceleration.
     let b = truth.K_over_T;
-    let (moment, moment_level, moment_correlation) = match (disturbances.random_walk, disturbances.gusts) {
+    let (moment, moment_level, moment_correlation_time) = match (disturbances.random_walk, disturbances.gusts) {
         (0.0, None) => (MomentKind::None, 0.0, f64::INFINITY),
         (walk, None) => (MomentKind::Walk, b * walk, f64::INFINITY),
         (0.0, Some(gusts)) => (MomentKind::OrnsteinUhlenbeck, b * gusts.sd, gusts.correlation_time),
@@ -87,7 +87,7 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Op
         yaw_rate_sd: sensors.yaw_rate_noise.filter(|noise| is_right && *noise > 0.0),
         moment,
         moment_level,
-        moment_correlation,
+        moment_correlation_time,
         rudder_sd: if read { sensors.rudder_noise } else { 0.0 },
         ..compass
     })

@@ -96,7 +96,7 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     finish(&scenario, StudyRun { manifest, trials, computed: 0 }, folder)
 }
 
-/// Result of a run.
+/// Result of a run of a study or a shard.
 struct StudyRun {
     manifest: Manifest,
     /// Number of trials of every cell.
@@ -278,10 +278,10 @@ fn run_all(
 }
 
 /// Maximum wait for running trials after a request to stop.
-const PATIENCE: Duration = Duration::from_millis(200);
+const MAX_STOP_WAIT: Duration = Duration::from_millis(200);
 
 /// Interval at which a request to stop is polled.
-const LOOK: Duration = Duration::from_millis(20);
+const STOP_POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Runs batches until the plan is done, a batch is incomplete, or `take` accepts no more.
 fn run_batches(
@@ -313,7 +313,7 @@ fn runner<'a>(scenario: &'a Scenario, tasks: &[TrialId]) -> TrialRunner<'a> {
 }
 
 /// Runs a batch on a separate thread, so that an interruption need not wait for a trial without end. Returns the
-/// outcomes up to the first missing one.
+/// outcomes up to the first missing one, and how the batch ended.
 fn watched<'scope>(
     scope: &'scope Scope<'scope, '_>,
     scenario: &'scope Scenario,
@@ -341,14 +341,14 @@ fn watched<'scope>(
     });
     let mut asked: Option<Instant> = None;
     let is_stuck = loop {
-        match receive.recv_timeout(LOOK) {
+        match receive.recv_timeout(STOP_POLL_INTERVAL) {
             Ok((index, outcome)) => {
                 outcomes[index] = Some(outcome);
                 observer.advance();
             }
             Err(RecvTimeoutError::Disconnected) => break false,
             Err(RecvTimeoutError::Timeout) if observer.should_stop() => {
-                if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
+                if asked.get_or_insert_with(Instant::now).elapsed() >= MAX_STOP_WAIT {
                     break true;
                 }
             }

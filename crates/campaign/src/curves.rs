@@ -77,7 +77,7 @@ pub fn replay_curves(
 ) -> Vec<ReplayCurves> {
     let curves = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         let replay = replay(trial, &estimate.as_ref()?.response)?;
-        let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
+        let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed_residuals().unzip();
         Some(ReplayCurves {
             origin: origin(&entry.method),
             heading: angle_curve_deg(&replay.time, &replay.heading),

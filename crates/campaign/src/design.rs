@@ -56,7 +56,7 @@ pub struct CellFacts {
     pub length_over_speed_s: Option<f64>,
     /// Fitted records and validation record of each trial, in a study of measured records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub records: Vec<JudgedRecord>,
+    pub records: Vec<TrialRecords>,
     /// Cramér–Rao covariance of the relative errors of K and T, %²; `null` if every trial has its own
     /// bound, or if there is no bound.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
@@ -65,7 +65,7 @@ pub struct CellFacts {
 /// Records of one trial in a study of measured records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedRecord {
+pub struct TrialRecords {
     /// Names of the records that were fitted together, joined by commas.
     pub fitted: String,
     /// Name of the validation record; `null` without one.
@@ -73,8 +73,8 @@ pub struct JudgedRecord {
     pub validation: Option<String>,
 }
 
-fn judged_records(set: &RecordSet) -> Vec<JudgedRecord> {
-    let records = |split: &RecordSplit| JudgedRecord {
+fn trial_records(set: &RecordSet) -> Vec<TrialRecords> {
+    let records = |split: &RecordSplit| TrialRecords {
         fitted: split.fitted.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
         validation: split.validation.map(|place| set.name(place).to_owned()),
     };
@@ -94,7 +94,7 @@ impl Design {
             physics: cell.physics().filter(|_| is_stated),
             is_base_with_effects: cell.is_base_with_effects(),
             is_compared_with_nearest: cell.is_compared_with_nearest(),
-            records: cell.record_set().map_or_else(Vec::new, judged_records),
+            records: cell.record_set().map_or_else(Vec::new, trial_records),
             length_over_speed_s: cell.particulars().filter(|_| has_limits).map(|ship| ship.length / ship.speed),
             ..CellFacts::default()
         };

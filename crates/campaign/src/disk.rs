@@ -10,7 +10,7 @@ pub mod faults;
 
 /// Runs an operation on a path, unless a test makes it fail.
 fn at<T>(path: &Path, operation: impl FnOnce() -> io::Result<T>) -> io::Result<T> {
-    faults::strike(path)?;
+    faults::check_operation(path)?;
     operation()
 }
 
@@ -44,14 +44,14 @@ impl File {
 
 impl Read for File {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        faults::strike(&self.path)?;
+        faults::check_operation(&self.path)?;
         self.file.read(buffer)
     }
 }
 
 impl Write for File {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        if let Err(error) = faults::strike(&self.path) {
+        if let Err(error) = faults::check_operation(&self.path) {
             // A full disk accepts the first part.
             let _ = self.file.write(&buffer[..buffer.len() / 2]);
             return Err(error);
@@ -64,7 +64,7 @@ impl Write for File {
     }
 }
 
-/// Fails unless the path is a regular file, before it is opened.
+/// Checks before opening that a path, or the target of a link, is a regular file.
 fn regular(path: &Path) -> io::Result<()> {
     match fs::metadata(path)?.is_file() {
         true => Ok(()),
@@ -91,7 +91,7 @@ pub fn is_link(path: &Path) -> io::Result<bool> {
     Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
 
-/// Content of a regular file of at most `largest` bytes; `None` if there is no file.
+/// Content of a regular file; `None` if there is no file. Fails for a file of more than `largest` bytes.
 pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let too_large = || io::Error::other(format!("it has more than {largest} bytes"));
     let Some(mut file) = if_present(File::open(path))? else { return Ok(None) };
@@ -123,7 +123,7 @@ pub fn remove_if_there(path: &Path) -> io::Result<()> {
     if_present(remove_file(path)).map(drop)
 }
 
-/// Names in a folder, sorted.
+/// Names of the files and subfolders of a folder, sorted.
 pub fn names(path: &Path) -> io::Result<Vec<String>> {
     let entries = at(path, || fs::read_dir(path)?.collect::<io::Result<Vec<_>>>())?;
     let mut names: Vec<String> = entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();

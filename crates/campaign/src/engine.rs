@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use ::trace::comparison::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use document::names;
-use document::trace::LocatedEntry;
+use document::trace::LocatedMomentEntry;
 use identify::replay::pooled_response_rms;
 use identify::{Estimate, StopReason};
 use ship::FirstOrder;
@@ -17,7 +17,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::{PreparedSimulation, SimulateError, SimulatedTrial, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::identified_ship::{self, MethodIndependentResults};
+use crate::identified_ship::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
 use crate::rows::{LocatedMoment, NamedEffect, StudyRow, TraceRow};
@@ -48,7 +48,7 @@ pub fn stream_key(scenario: &Scenario, task: TrialId) -> StreamKey {
     StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
 
-/// Simulates one trial: its record, and the further records of the same ship that the scenario specifies.
+/// Simulated records of one trial, further records of the same ship included. Fails if it cannot be simulated.
 pub fn simulate(scenario: &Scenario, task: TrialId) -> Result<Vec<SimulatedTrial>, String> {
     let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
@@ -65,7 +65,7 @@ pub struct TrueResponses {
     pub base: Option<FirstOrder>,
 }
 
-/// True responses of one trial. Fails if its sampled values define no ship.
+/// True responses of one trial. Fails if its sampled values define no ship, and for measured records.
 pub fn true_responses(scenario: &Scenario, task: TrialId) -> Result<TrueResponses, String> {
     let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
@@ -270,7 +270,7 @@ impl TrialInput<'_> {
             |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
         // An effect may require speed and sway.
-        let identified = |facts: &MethodIndependentResults| {
+        let identified = |facts: &RecordFacts| {
             Some(identified_ship::from_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])))
         };
         StudyRow {
@@ -283,21 +283,21 @@ impl TrialInput<'_> {
                 named: document.effects.iter().map(NamedEffect::from_entry).collect(),
                 located: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
-                    .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
+                    .map(|id| (Box::from(id), (PROBABILITY_STEPS * probability(id)).round() / PROBABILITY_STEPS))
                     .filter(|(_, probability)| *probability >= MIN_PROBABILITY)
                     .collect(),
                 margin: margin(analysis, self.missing),
-                expected: self.reference.expected,
-                band_fitted: analysis.identification[0].after.coverage().map(|coverage| coverage.share()),
-                band_held_out: validation.and_then(ReplayResult::coverage).map(|coverage| coverage.share()),
+                expected_2_ln_lambda: self.reference.expected_2_ln_lambda,
+                fitted_band_coverage: analysis.identification[0].after.coverage().map(|coverage| coverage.share()),
+                validation_band_coverage: validation.and_then(ReplayResult::coverage).map(|coverage| coverage.share()),
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }
     }
 }
 
-/// Located moment; `end` (s) is the last instant of the records, to which a moment without an end lasts.
-fn located(entry: &LocatedEntry, end: f64) -> LocatedMoment {
+/// Located moment of a row; a moment that ends at or after `end` (s), the end of the records, has no end.
+fn located(entry: &LocatedMomentEntry, end: f64) -> LocatedMoment {
     let is_named = |id: &&str| {
         let name = names::effect(id);
         let is_of_name = |label: &String| label.split(" (").next() == Some(&name);
@@ -324,7 +324,7 @@ fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
     }
 }
 
-/// Failure of a trace in one word, for its row: `settings`, `not-finite`, or that of the fit of its base.
+/// Kind of a failed trace, for its row: `settings`, `not-finite`, or the kind of the failed fit of its base.
 pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
     match error {
         TraceError::Settings(_) | TraceError::NoCandidate { .. } => "settings",
@@ -337,10 +337,10 @@ pub(crate) fn trace_failure_kind(error: &TraceError) -> &'static str {
 const MIN_PROBABILITY: f64 = 0.005;
 
 /// Reciprocal of the step to which probabilities are rounded, so that a stored row equals the computed one.
-const DIGITS: f64 = 1000.0;
+const PROBABILITY_STEPS: f64 = 1000.0;
 
-/// Difference of log evidence between the missing effect and the best other effect; `None` unless exactly one effect
-/// is missing and the trace weighed both.
+/// Log evidence, −ΔBIC/2, of the missing effect less that of the best other effect; `None` unless exactly one effect is
+/// missing and both have a ΔBIC.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {
@@ -354,7 +354,7 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Row with K (1/s), T (s), δ_r (rad) and their intervals.
+/// Row with estimates of K (1/s), T (s) and δ_r (rad) and their intervals.
 fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
     StudyRow {
         k_per_s: finite(k.value),

@@ -84,7 +84,7 @@ impl Failure {
         Self { kind: FailureKind::Interrupted, ..Self::input(message) }.with_code(ErrorCode::Interrupted)
     }
 
-    /// Failure with an error code.
+    /// Same failure with another error code.
     #[must_use]
     pub fn with_code(mut self, code: ErrorCode) -> Self {
         self.parts.code = code;
@@ -140,7 +140,7 @@ impl Error for Failure {}
 
 /// Conversion of an error on a file of the study into a failure.
 pub trait OnPath<T> {
-    /// Failure of an action on a path: "failed to ACTION PATH: cause".
+    /// Result whose error is a failure of kind [`FailureKind::Work`]: "failed to ACTION PATH: cause".
     fn on(self, action: &str, path: &Path) -> Result<T, Failure>;
 }
 

@@ -12,7 +12,7 @@ use crate::disk;
 use crate::failure::{Failure, OnPath};
 
 /// Prefix of the names of temporary files, which no reader of the folder uses.
-const UNDER_WAY: &str = ".kempf-";
+const TEMPORARY_PREFIX: &str = ".kempf-";
 
 /// Age of a temporary file from which it counts as left behind by a killed program.
 const MAX_AGE: Duration = Duration::from_secs(3600);
@@ -66,8 +66,8 @@ impl ResultFolder {
     /// Temporary file, renamed to the given name on [`TemporaryFile::persist`].
     pub fn create_temporary(&self, name: &str) -> Result<TemporaryFile, Failure> {
         let place = self.place(name)?;
-        let path = self.place(&format!("{UNDER_WAY}{:x}-{name}", process()))?;
-        // Left by an earlier fault.
+        let path = self.place(&format!("{TEMPORARY_PREFIX}{:x}-{name}", process()))?;
+        // An earlier failed write of this process may have left it.
         disk::remove_if_there(&path).on("remove", &path)?;
         let file = disk::File::create_new(&path).on("create", &path)?;
         Ok(TemporaryFile { file: BufWriter::new(file), place, path, is_put: false })
@@ -91,7 +91,8 @@ impl ResultFolder {
 
     /// Removes the selected files, and temporary files that killed programs left behind.
     pub fn remove_matching(&self, is_selected: impl Fn(&str) -> bool) -> Result<(), Failure> {
-        let is_left = |name: &str| name.starts_with(UNDER_WAY) && disk::age(&self.path.join(name)) > Some(MAX_AGE);
+        let is_left =
+            |name: &str| name.starts_with(TEMPORARY_PREFIX) && disk::age(&self.path.join(name)) > Some(MAX_AGE);
         let names = disk::names(&self.path).on("list the folder", &self.path)?.into_iter();
         let names = names.filter(|name| is_selected(name) || is_left(name));
         names.map(|name| self.path.join(name)).try_for_each(|path| disk::remove_if_there(&path).on("remove", &path))

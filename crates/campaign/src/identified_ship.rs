@@ -22,7 +22,7 @@ const NO_MOTION: &str = "these records do not determine speed loss and drift, so
 
 /// Facts of the records of one ship that are independent of the fitted model; computed once for all methods.
 #[derive(Debug, Clone)]
-pub struct MethodIndependentResults<'a> {
+pub struct RecordFacts<'a> {
     trials: &'a [Trial],
     gear: Option<IdentifiedGear>,
     /// Standard deviation of the heading readings, rad.
@@ -40,8 +40,8 @@ pub struct MethodIndependentResults<'a> {
     pub no_track: Option<String>,
 }
 
-impl<'a> MethodIndependentResults<'a> {
-    /// Facts of the records of one ship, without speed and drift.
+impl<'a> RecordFacts<'a> {
+    /// Facts of the records of one ship, without fitted hulls.
     pub fn from_trials(trials: &'a [Trial]) -> Self {
         let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::from_trial(trial).ok()).collect();
         let particular = |value: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(value));
@@ -58,8 +58,8 @@ impl<'a> MethodIndependentResults<'a> {
         }
     }
 
-    /// Facts with hulls fitted to records that begin under way, with length and speed of the ship. No hull is fitted
-    /// unless every record contains speed or positions, or an analysis or earlier trials give hulls.
+    /// Facts with hulls fitted to the records, and the reason if none gives a track. No hull is fitted unless every
+    /// record contains speed or positions, the analysis has hulls, or there are hulls of earlier trials.
     pub fn with_motion(mut self, analysis: Option<&Analysis>, earlier: &[EarlierHull]) -> Self {
         let has_all = |trial: &Trial, all: &[Channel]| all.iter().all(|channel| trial.channel(*channel).is_some());
         let sources = [&[Channel::Speed][..], &[Channel::Surge, Channel::Sway], &[Channel::North, Channel::East]];
@@ -68,8 +68,8 @@ impl<'a> MethodIndependentResults<'a> {
         let tells_hull = was_told || self.trials.iter().all(has_speed);
         // Response models may replay the records better, but give no speed in another manoeuvre.
         let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
-        fitted.sort_by(|a, b| a.mean_square().total_cmp(&b.mean_square()));
-        let informed = fitted.iter().filter(|hull| hull.prior.has_trials);
+        fitted.sort_by(|a, b| a.mean_square_heading_error().total_cmp(&b.mean_square_heading_error()));
+        let informed = fitted.iter().filter(|hull| hull.prior.has_earlier_trials);
         self.checks = informed.filter_map(|hull| Some((hull.prior.form.as_str(), hull.prior_check()?))).collect();
         let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
@@ -117,13 +117,13 @@ impl<'a> MethodIndependentResults<'a> {
             expected: prior.mean,
             expected_sd: prior.sd,
         };
-        let HullReference { length, speed, propeller } = hull.reference;
+        let HullReference { length, speed, propeller_rate } = hull.reference;
         IdentifiedHull {
             form: expected.form.as_str().to_owned(),
             weight: 1.0 / count as f64,
             length_m: length,
             speed_m_s: speed,
-            propeller_per_s: propeller,
+            propeller_per_s: propeller_rate,
             particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
             coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
             covariance: matrix_rows(&hull.covariance),
@@ -138,10 +138,10 @@ impl<'a> MethodIndependentResults<'a> {
 
     /// Rms difference of initial yaw rate between hull replays and straight approaches, rad/s; 0 without an approach.
     fn beginning(&self, hull: &HullEstimate) -> f64 {
-        let beyond = |(zigzag, record): (&Option<ZigZag>, &HullResidual)| {
-            Some((record.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
+        let beyond = |(zigzag, residual): (&Option<ZigZag>, &HullResidual)| {
+            Some((residual.initial_yaw_rate - zigzag.as_ref()?.straight_yaw_rate()?.value).powi(2))
         };
-        let squares: Vec<f64> = self.zigzags.iter().zip(&hull.records).filter_map(beyond).collect();
+        let squares: Vec<f64> = self.zigzags.iter().zip(&hull.residuals).filter_map(beyond).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
     }
 
@@ -173,7 +173,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
 ///
 /// Only `maximum-likelihood` estimates a random moment. For other methods the heading noise is the reading noise, or
 /// the rms residual of the replay if the records are not zig-zags.
-pub fn from_estimate(estimate: &Estimate, facts: &MethodIndependentResults) -> Option<IdentifiedShip> {
+pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<Replay> = facts.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
@@ -197,7 +197,7 @@ pub fn from_estimate(estimate: &Estimate, facts: &MethodIndependentResults) -> O
 ///
 /// If no effect is missing but a random moment acts, the first-order member comes from `maximum-likelihood`, whose
 /// covariance includes the uncertainty of the noise law.
-pub fn from_analysis(analysis: &Analysis, facts: &MethodIndependentResults) -> IdentifiedShip {
+pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible_structures().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = analysis.noise;
@@ -209,7 +209,7 @@ pub fn from_analysis(analysis: &Analysis, facts: &MethodIndependentResults) -> I
 }
 
 /// Ship with first-order member and noise of `maximum-likelihood`, if it also estimates a random moment.
-fn with_likelihood(mut ship: IdentifiedShip, facts: &MethodIndependentResults) -> IdentifiedShip {
+fn with_likelihood(mut ship: IdentifiedShip, facts: &RecordFacts) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let Some(likelihood) = method.identify(facts.trials).ok().and_then(|estimate| from_estimate(&estimate, facts))
     else {
@@ -276,7 +276,7 @@ fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<IdentifiedGear> 
     (count > 0.0).then(|| IdentifiedGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
 }
 
-/// Rate of the rudder on a record, rad/s, and its variance; `None` without a rate within [`RATES_DEG_S`].
+/// Rate of the rudder on a record, rad/s, and its variance, (rad/s)²; `None` without a rate within [`RATES_DEG_S`].
 fn rudder_rate(trial: &Trial, zigzag: &ZigZag) -> Option<(f64, f64)> {
     let is_sound = |rate: &f64| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate));
     let rate = zigzag.rudder_rate.filter(is_sound)?;
@@ -334,7 +334,7 @@ mod tests {
     fn a_ten_ten_predicts_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
         let gear = ship.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(ship.noise.heading_sd_rad) - 0.1).abs() < 0.02 && ship.noise.moment.is_none());
@@ -365,7 +365,7 @@ mod tests {
         assert!(ZigZag::from_trial(&cut).is_ok(), "the rest is a zig-zag");
         let trials = [cut];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
         assert_eq!(ship.approach_yaw_rate_rad_s, 0.0);
         let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let prediction =
@@ -379,7 +379,7 @@ mod tests {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
         let estimate = method.identify(&trials).expect("a fit");
-        let ship = from_estimate(&estimate, &MethodIndependentResults::from_trials(&trials)).expect("a covariance");
+        let ship = from_estimate(&estimate, &RecordFacts::from_trials(&trials)).expect("a covariance");
         assert!(!ship.noise.moment.is_none());
         assert!(ship.noise.moment.size() > 0.0);
     }
@@ -388,7 +388,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let ship = from_analysis(&analysis, &MethodIndependentResults::from_trials(&trials));
+        let ship = from_analysis(&analysis, &RecordFacts::from_trials(&trials));
         assert!((ship.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &ship.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
@@ -429,7 +429,7 @@ mod tests {
     fn zig_zags_of_a_tanker_predict_her_circle() {
         let zig_zags = ["zig-zag:10/10", "zig-zag:-20/20"].map(|kind| described(&tanker(kind)));
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
-        let facts = MethodIndependentResults::from_trials(&zig_zags).with_motion(None, &[]);
+        let facts = RecordFacts::from_trials(&zig_zags).with_motion(None, &[]);
         let ship = from_estimate(&estimate, &facts).expect("a covariance");
         assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
         // The ship begins straight: the yaw rate of replays is an error, less than a twentieth of that in the circle.

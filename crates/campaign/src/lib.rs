@@ -1,18 +1,20 @@
-//! A Monte-Carlo campaign: runs the trials of a scenario, stores their rows and summarises them.
+//! Monte-Carlo campaigns: the trials of a scenario are run, their rows stored and summarised.
 //!
 //! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. This crate neither plots,
 //! prints nor reads the command line; an [`Observer`] receives progress and warnings.
 //!
 //! | to learn about | read |
 //! |---|---|
+//! | the scenario file and its checks | [`scenario`] |
 //! | one trial, simulated or of measured records | [`engine`], `shared_fit` |
 //! | many trials, in order | [`shard`], [`block`], [`plan`], [`stopping`], [`collect`] |
 //! | estimates of outside estimators | [`outside_estimates`] |
 //! | stored files | [`design`], [`rows`], [`block_store`], [`store`], [`manifest`], [`showcase`], [`timings`] |
-//! | writing to disk | [`files`], [`folder`], [`disk`] |
+//! | writing to disk | [`files`], [`folder`], [`disk`], [`parquet_table`] |
+//! | failures, warnings and progress | [`failure`], [`observer`] |
 //! | summaries and their statistics | [`summary`], [`statistics`] |
 //! | plot data and document entries | [`curves`], [`stored_figures`] |
-//! | the identified ship, for predictions | [`identified_ship`] |
+//! | the identified ship, for predictions; priors from earlier trials | [`identified_ship`], [`earlier_trials`] |
 //! | comparison of methods on measured and simulated records | [`benchmark`] |
 
 pub mod benchmark;

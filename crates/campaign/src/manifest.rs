@@ -139,7 +139,7 @@ impl Manifest {
         Prose::from_scenario_text(&self.scenario)
     }
 
-    /// Writes the manifest of a folder.
+    /// Writes the manifest into a folder, with the wall time rounded to 1 ms.
     pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
         let text =
@@ -147,7 +147,7 @@ impl Manifest {
         folder.write_synced(MANIFEST_FILE, REPEAT.to_owned() + &text)
     }
 
-    /// Manifest at a path; `None` without a file.
+    /// Manifest at a path; `None` without a file. Fails for any other content.
     pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
         let refuse = |problem: &str| Failure::in_file(path, format!("{problem}; expected the manifest of a study"));
         let Some(bytes) = disk::read(path, MAX_MANIFEST_BYTES).on("read", path)? else { return Ok(None) };

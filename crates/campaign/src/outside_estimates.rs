@@ -15,7 +15,7 @@ use crate::design::Design;
 use crate::failure::Failure;
 use crate::observer::Observer;
 use crate::scenario::name::{quoted_beginning, slug};
-use crate::scenario::outside_estimates::{OutsideEstimates, TrialNumber};
+use crate::scenario::outside_estimates::{CellAndReplicate, OutsideEstimates};
 use crate::scenario::{Scenario, hex};
 use crate::shard::TrialId;
 
@@ -25,7 +25,7 @@ pub const TRIALS_FILE: &str = "trials.toml";
 /// Contents of `trials.toml`. A scenario can be read from it as from a manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub struct Trials {
+pub struct TrialsDocument {
     /// Name of the scenario.
     pub name: String,
     /// Seed of the run.
@@ -36,7 +36,7 @@ pub struct Trials {
     pub scenario: String,
 }
 
-impl Trials {
+impl TrialsDocument {
     /// Description of the trials of a scenario.
     pub fn from_scenario(scenario: &Scenario) -> Self {
         let Scenario { name, seed, design_sha256, text, .. } = scenario;
@@ -61,14 +61,14 @@ pub fn record_name(scenario: &Scenario, task: TrialId) -> String {
 }
 
 /// Name of record `number` of a trial, from 0; further records carry their number.
-pub fn part_name(record: &str, number: usize) -> String {
+pub fn numbered_record_name(record: &str, number: usize) -> String {
     if number == 0 { record.to_owned() } else { format!("{record}-also-{number}") }
 }
 
 /// Name and maximum size of a table of outside estimates, which suffices for one line per trial of a large study.
 const TABLE: FileKind = FileKind { name: "a table of answers", max_bytes: 1 << 30 };
 
-/// Known columns: those that are read, and those copied from the list of trials.
+/// Names of the known columns: those that are read, and those copied from the list of trials.
 const COLUMNS: &str =
     "method record cell replicate K_per_s T_s delta_r_deg K_sd_per_s T_sd_s delta_r_sd_deg failed label also";
 
@@ -78,8 +78,8 @@ const MAX_NAMED_COLUMNS: usize = 20;
 /// Maximum number of faulty lines that a message names.
 const MAX_NAMED_LINES: usize = 10;
 
-/// Outside estimates from a table, by method in the order of first lines; `None` is the method of a table without that
-/// column.
+/// Outside estimates from a table, by method, in the order of their first lines; the key `None` holds the lines without
+/// a method.
 ///
 /// A trial is identified by `record` (for measured records: those fitted together) or by `cell` and `replicate`. The
 /// estimates are `K_per_s` and `T_s`; optional are `delta_r_deg`, the standard deviations `K_sd_per_s`, `T_sd_s` and
@@ -106,15 +106,15 @@ pub fn read(
         observer.warn(&format!("{}: columns that are not used: {}", path.display(), columns.ignored.join(", ")));
     }
     let records = Records::from_scenario(scenario);
-    let mut lines: HashMap<(Option<String>, TrialNumber), u64> = HashMap::new();
-    let mut answers: IndexMap<Option<String>, HashMap<TrialNumber, _>> = IndexMap::new();
+    let mut lines: HashMap<(Option<String>, CellAndReplicate), u64> = HashMap::new();
+    let mut answers: IndexMap<Option<String>, HashMap<CellAndReplicate, _>> = IndexMap::new();
     let mut faults = Vec::new();
     for row in table.records() {
         let row = row.map_err(|error| refuse(error.to_string()))?;
         let line = row.position().map_or(0, |position| position.line());
         let read = columns.places(&row, &records).and_then(|places| Ok((places, columns.answer(&row)?)));
         let method = columns.text(&row, "method").map(str::to_owned);
-        let mut keep = |(places, answer): (Vec<TrialNumber>, Result<OutsideFit, String>)| {
+        let mut keep = |(places, answer): (Vec<CellAndReplicate>, Result<OutsideFit, String>)| {
             let by_trial = answers.entry(method.clone()).or_default();
             places.into_iter().fold(None, |before, place| {
                 by_trial.insert(place, answer.clone());
@@ -166,7 +166,7 @@ struct Records<'a> {
     /// Cell index by record name without the replicate; most studies have far fewer cells than trials.
     cells: HashMap<String, u64>,
     /// Trials by the names of the records fitted together, in a study of measured records.
-    fits: HashMap<String, Vec<TrialNumber>>,
+    fits: HashMap<String, Vec<CellAndReplicate>>,
 }
 
 impl<'a> Records<'a> {
@@ -174,7 +174,7 @@ impl<'a> Records<'a> {
         let name = |cell: usize| record_name(scenario, TrialId { cell, replicate: 0 });
         let several = scenario.replicates > 1;
         let of_cell = |cell: usize| if several { stem(&name(cell)).0.to_owned() } else { name(cell) };
-        let mut fits: HashMap<String, Vec<TrialNumber>> = HashMap::new();
+        let mut fits: HashMap<String, Vec<CellAndReplicate>> = HashMap::new();
         for (cell, facts) in Design::from_scenario(scenario).cells.into_iter().enumerate() {
             for (replicate, record) in facts.records.into_iter().enumerate() {
                 fits.entry(record.fitted).or_default().push((cell as u64, replicate as u64));
@@ -185,8 +185,8 @@ impl<'a> Records<'a> {
     }
 
     /// Trials of one line: the trial of a simulated record, by its file name, or all trials that share the fit
-    /// of measured records, by their names as in `records.csv`.
-    fn find(&self, record: &str) -> Option<Vec<TrialNumber>> {
+    /// of measured records, by their names as in `records.csv`. `None` for an unknown record.
+    fn find(&self, record: &str) -> Option<Vec<CellAndReplicate>> {
         match self.fits.is_empty() {
             true => self.simulated(record).map(|trial| vec![trial]),
             false => self.fits.get(record.strip_suffix(".csv").unwrap_or(record)).cloned(),
@@ -194,7 +194,7 @@ impl<'a> Records<'a> {
     }
 
     /// Trial of a simulated record, from its file name.
-    fn simulated(&self, record: &str) -> Option<TrialNumber> {
+    fn simulated(&self, record: &str) -> Option<CellAndReplicate> {
         let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
         let name = file.strip_suffix(".csv").unwrap_or(file);
         let (cell, replicate) = match self.scenario.replicates {
@@ -250,7 +250,7 @@ impl AnswerColumns {
         Ok(Some(number).filter(|number| number.is_finite()))
     }
 
-    fn places(&self, row: &StringRecord, records: &Records) -> Result<Vec<TrialNumber>, String> {
+    fn places(&self, row: &StringRecord, records: &Records) -> Result<Vec<CellAndReplicate>, String> {
         if let Some(record) = self.text(row, "record") {
             return records
                 .find(record)
@@ -333,7 +333,7 @@ mod tests {
                 for written in [name.clone(), format!("{name}.csv"), format!("a/b/{name}.csv"), format!("c:\\{name}")] {
                     assert_eq!(records.find(&written), Some(vec![(task.cell as u64, task.replicate)]), "{written}");
                 }
-                assert_eq!(records.find(&part_name(&name, 1)), None);
+                assert_eq!(records.find(&numbered_record_name(&name, 1)), None);
                 assert_eq!(records.find(&format!("{name}9")), None);
             }
         }

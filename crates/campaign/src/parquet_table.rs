@@ -11,7 +11,7 @@ use parquet::schema::types::{Type, TypePtr};
 
 /// Values of one column, one per row; `None` for a missing value.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Values {
+pub enum ColumnValues {
     /// Whole numbers.
     Counts(Vec<Option<i64>>),
     /// Numbers.
@@ -20,7 +20,7 @@ pub enum Values {
     Texts(Vec<Option<String>>),
 }
 
-impl Values {
+impl ColumnValues {
     /// Schema of the column; values may be missing.
     fn field(&self, name: &str) -> TypePtr {
         let (physical, logical) = match self {
@@ -32,14 +32,14 @@ impl Values {
     }
 }
 
-/// Column of a schema.
+/// Schema of one column.
 pub(crate) fn field(name: &str, physical: Physical, repetition: Repetition, logical: Option<LogicalType>) -> TypePtr {
     let field =
         Type::primitive_type_builder(name, physical).with_repetition(repetition).with_logical_type(logical).build();
     Arc::new(field.expect("kinds and logical types fit together"))
 }
 
-/// Schema of a table with these columns.
+/// Schema of a table with columns of these schemas.
 pub(crate) fn schema(fields: Vec<TypePtr>) -> TypePtr {
     Arc::new(Type::group_type_builder("rows").with_fields(fields).build().expect("a group of columns"))
 }
@@ -47,15 +47,15 @@ pub(crate) fn schema(fields: Vec<TypePtr>) -> TypePtr {
 /// Writes columns as one row group.
 pub(crate) fn write_group(
     file: &mut SerializedFileWriter<Vec<u8>>,
-    columns: impl IntoIterator<Item = Values>,
+    columns: impl IntoIterator<Item = ColumnValues>,
 ) -> Result<()> {
     let mut group = file.next_row_group()?;
     for values in columns {
         let mut target = group.next_column()?.expect("the file has the columns of its layout");
         match values {
-            Values::Counts(values) => write::<Int64Type>(&mut target, values),
-            Values::Numbers(values) => write::<DoubleType>(&mut target, values),
-            Values::Texts(values) => {
+            ColumnValues::Counts(values) => write::<Int64Type>(&mut target, values),
+            ColumnValues::Numbers(values) => write::<DoubleType>(&mut target, values),
+            ColumnValues::Texts(values) => {
                 let bytes = |text: String| ByteArray::from(text.into_bytes());
                 write::<ByteArrayType>(&mut target, values.into_iter().map(|text| text.map(bytes)).collect())
             }
@@ -72,8 +72,8 @@ fn write<T: DataType>(target: &mut SerializedColumnWriter<'_>, values: Vec<Optio
     target.typed::<T>().write_batch(&values, Some(&present), None)
 }
 
-/// Parquet file of a table, whose columns must have the same number of rows.
-pub fn encode(columns: Vec<(String, Values)>) -> Result<Vec<u8>> {
+/// Bytes of a Parquet file of named columns, compressed with Snappy. Fails if their numbers of rows differ.
+pub fn encode(columns: Vec<(String, ColumnValues)>) -> Result<Vec<u8>> {
     let fields = columns.iter().map(|(name, values)| values.field(name)).collect();
     let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
     let mut file = SerializedFileWriter::new(Vec::new(), schema(fields), Arc::new(properties))?;

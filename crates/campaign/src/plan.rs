@@ -75,7 +75,7 @@ impl<'a> TrialPlan<'a> {
             blocks: shard_blocks(scenario, shard),
             cell: 0,
             open: 0..0,
-            rule: scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.labels())),
+            rule: scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.method_labels())),
             trials: vec![0; scenario.cells.len()],
         }
     }

@@ -6,16 +6,16 @@ use predict::{ShipMixture, figures, standard};
 use simulate::{Manoeuvre, Sensors, Simulation, StreamKey};
 use trial::Trial;
 
-use crate::identified_ship::MethodIndependentResults;
+use crate::identified_ship::RecordFacts;
 use crate::rows::PredictedCharacteristic;
 use crate::scenario::PredictionSettings;
 
-/// True manoeuvres of the ship of a trial, with the facts of its records.
+/// Check of predictions: true characteristics of manoeuvres of the ship of a trial, and the facts of its records.
 pub struct PredictionCheck<'a> {
     asked: &'a PredictionSettings,
     /// True characteristics by name, per manoeuvre; `None` if the ship does not complete it.
     true_manoeuvres: Vec<Option<figures::Characteristics>>,
-    facts: MethodIndependentResults<'a>,
+    facts: RecordFacts<'a>,
 }
 
 /// Time scale of a ship without particulars or closed form, in sampling periods of its record.
@@ -27,8 +27,8 @@ pub fn is_repeated_in_lengths(name: &str, is_there: impl Fn(&str) -> bool) -> bo
 }
 
 impl<'a> PredictionCheck<'a> {
-    /// Simulates the manoeuvres with the ship, gear and weather of a trial, and random numbers independent of its
-    /// records.
+    /// Simulates the manoeuvres with the ship, gear and weather of a trial, without measurement errors, and with random
+    /// numbers independent of its records.
     pub fn new(asked: &'a PredictionSettings, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
         let closed = simulation.ship.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
         let of_hull = simulation.ship.particulars().map(|particulars| particulars.length / particulars.speed);
@@ -48,14 +48,15 @@ impl<'a> PredictionCheck<'a> {
         Self {
             asked,
             true_manoeuvres: asked.manoeuvres.iter().map(true_figures).collect(),
-            facts: MethodIndependentResults::from_trials(records),
+            facts: RecordFacts::from_trials(records),
         }
     }
 
-    /// Predicted and true characteristics of the manoeuvres; those missing on either side are omitted.
+    /// Predicted and true characteristics of the manoeuvres; those missing on either side are omitted. Empty without an
+    /// identified ship.
     pub fn characteristics(
         &self,
-        identified: impl FnOnce(&MethodIndependentResults) -> Option<IdentifiedShip>,
+        identified: impl FnOnce(&RecordFacts) -> Option<IdentifiedShip>,
     ) -> Box<[PredictedCharacteristic]> {
         let mixture = identified(&self.facts).and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
         let Some(mixture) = mixture else { return Box::default() };

@@ -23,9 +23,9 @@ pub struct TrialReference {
     /// Second manoeuvre outside the fit: simulated without disturbance and measurement noise, or a measured record
     /// without heading spikes; `None` without validation.
     pub validation: Option<Trial>,
-    /// Expected 2 ln Λ of the truth against the nearest first-order response; `None` without a trace, and unless the
-    /// heading noise is white.
-    pub expected: Option<f64>,
+    /// Expected 2 ln Λ, with the likelihood ratio Λ of the truth to the nearest first-order response; `None` without a
+    /// trace, and unless the heading noise is white.
+    pub expected_2_ln_lambda: Option<f64>,
 }
 
 impl TrialReference {
@@ -40,7 +40,7 @@ impl TrialReference {
         let near = if truth.is_none() || traces { nearest_first_order(&trial_spec.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
         let base = base.filter(|_| truth.is_none());
-        let sd = simulation.sensors.declared_noise().heading;
+        let sd = simulation.sensors.declared_noise().heading_sd;
         let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
         let bound = nearest.and_then(|nearest| bound::cramer_rao_bound(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
@@ -50,8 +50,8 @@ impl TrialReference {
         let ratio = |(near, sd): (NearestResponse, f64)| {
             near.mean_square / (sd * sd) * near.rows.div_ceil(heading_every_rows.unwrap_or(1)) as f64
         };
-        let expected = near.filter(|_| traces).zip(white).map(ratio);
-        Self { nearest, base, bound, validation: validation.map(|simulated| simulated.trial), expected }
+        let expected_2_ln_lambda = near.filter(|_| traces).zip(white).map(ratio);
+        Self { nearest, base, bound, validation: validation.map(|simulated| simulated.trial), expected_2_ln_lambda }
     }
 }
 

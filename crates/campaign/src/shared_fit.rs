@@ -16,7 +16,7 @@ use simulate::StreamKey;
 use trial::{Channel, Trial};
 
 use crate::engine::{self, TrialInput, TrialOutcome, TrialRunner};
-use crate::identified_ship::{self, MethodIndependentResults};
+use crate::identified_ship::{self, RecordFacts};
 use crate::prediction_check::is_repeated_in_lengths;
 use crate::reference::TrialReference;
 use crate::rows::{PredictedCharacteristic, StudyRow};
@@ -25,7 +25,7 @@ use crate::scenario::{PredictionSettings, Procedure, Scenario};
 use crate::shard::TrialId;
 use crate::timings::TrialTiming;
 
-/// Relative tolerance of ship length within one scale.
+/// Maximum relative difference of the ship lengths of fitted and validation records of one scale.
 const SCALE: f64 = 0.01;
 
 /// Index ranges of tasks that are run together: trials of measured records that share a fit.
@@ -75,7 +75,7 @@ struct SharedTrials<'a> {
     /// Fitted records without heading spikes, which are excluded from all errors.
     cleaned: &'a [Trial],
     /// Validation record of each trial, as read and without heading spikes; `None` without validation.
-    judges: Vec<Option<[&'a Trial; 2]>>,
+    validation_records: Vec<Option<[&'a Trial; 2]>>,
 }
 
 /// Outcomes, in order, of trials that share their fitted records; a method is fitted once, and each trial has an equal
@@ -85,8 +85,9 @@ fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutc
     let both = [&set.trials, set.without_spikes()];
     let of_fit = |all: &[Trial]| split(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
     let [fitted, cleaned]: [Vec<Trial>; 2] = both.map(of_fit);
-    let judges = tasks.iter().map(|task| split(task).validation.map(|place| both.map(|all| &all[place]))).collect();
-    let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, judges };
+    let validation_records =
+        tasks.iter().map(|task| split(task).validation.map(|place| both.map(|all| &all[place]))).collect();
+    let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, validation_records };
     let blank = |task: &TrialId| TrialOutcome {
         rows: Vec::new(),
         timing: TrialTiming { cell: task.cell as u64, simulation: Duration::ZERO, methods: Vec::new() },
@@ -110,8 +111,8 @@ impl SharedTrials<'_> {
         let key = |task: &TrialId| engine::stream_key(self.scenario, *task);
         let shared = match procedure {
             Procedure::Trace(settings) => {
-                let judge = |trial| self.replayed(trial).map(|[judge, _]| judge.clone());
-                let held_out: Vec<Trial> = (0..self.judges.len()).filter_map(judge).collect();
+                let as_read = |trial| self.replayable_validation_record(trial).map(|[record, _]| record.clone());
+                let held_out: Vec<Trial> = (0..self.validation_records.len()).filter_map(as_read).collect();
                 let settings = ::trace::Settings { fits_hulls: true, ..settings.clone() };
                 let analysis = ::trace::trace(self.fitted, &held_out, &settings);
                 let fit = |analysis| self.fit(FitAnswer::Trace(Box::new(analysis)), Some(&settings));
@@ -136,11 +137,11 @@ impl SharedTrials<'_> {
 
     /// Validation record of a trial, as read and without heading spikes; `None` without validation, and if its ship
     /// length differs from that of the fitted records, since responses of another scale are not replayed.
-    fn replayed(&self, trial: usize) -> Option<[&Trial; 2]> {
+    fn replayable_validation_record(&self, trial: usize) -> Option<[&Trial; 2]> {
         let length = |trial: &Trial| trial.particulars().map(|particulars| particulars.length);
         let fitted = self.fitted.iter().find_map(length);
         let are_alike = |(length, fitted): (f64, f64)| (length / fitted - 1.0).abs() < SCALE;
-        self.judges[trial].filter(|[judge, _]| length(judge).zip(fitted).is_none_or(are_alike))
+        self.validation_records[trial].filter(|[record, _]| length(record).zip(fitted).is_none_or(are_alike))
     }
 
     /// First-order fit to the records, or the reason of its failure; `None` for a trace and for the null model.
@@ -152,35 +153,36 @@ impl SharedTrials<'_> {
 
     /// Fit with the identified ship for predictions; `settings` are the settings of a trace.
     fn fit(&self, answer: FitAnswer, settings: Option<&::trace::Settings>) -> RecordFit {
-        let is_asked = self.scenario.predictions.is_some() && self.judges.iter().any(Option::is_some);
+        let is_asked = self.scenario.predictions.is_some() && self.validation_records.iter().any(Option::is_some);
         RecordFit { ship: if is_asked { ship(&answer, self.fitted, settings) } else { None }, answer }
     }
 
     /// Row of a fit for one trial, with the errors on its validation record.
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
-        let judge = self.replayed(trial).map(|[_, cleaned]| cleaned);
-        let reference = TrialReference { validation: judge.cloned(), ..TrialReference::default() };
+        let record = self.replayable_validation_record(trial).map(|[_, cleaned]| cleaned);
+        let reference = TrialReference { validation: record.cloned(), ..TrialReference::default() };
         let input = TrialInput { trials: self.cleaned, key, reference: &reference, missing: &[], check: None };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
-                let replayed = |judge| {
-                    of_base(judge, &PreparedRecord::unaveraged(judge), &estimate.response, ReplayDepth::Windows).ok()
+                let replayed = |record| {
+                    of_base(record, &PreparedRecord::unaveraged(record), &estimate.response, ReplayDepth::Windows).ok()
                 };
-                (input.estimate_row(blank, estimate), judge.and_then(replayed).map(|on| on.errors))
+                (input.estimate_row(blank, estimate), record.and_then(replayed).map(|on| on.errors))
             }
             FitAnswer::StraightOn => (input.straight_course_row(blank), None),
             FitAnswer::Trace(analysis) => {
-                let before = (0..trial).filter_map(|earlier| self.replayed(earlier)).count();
-                let validation = judge.and(analysis.validation.get(before)).map(|compared| &compared.after);
+                let before = (0..trial).filter_map(|earlier| self.replayable_validation_record(earlier)).count();
+                let validation = record.and(analysis.validation.get(before)).map(|compared| &compared.after);
                 (input.trace_row(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
         let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS_S[1]));
-        let predicted = self.scenario.predictions.as_ref().map(|asked| match (&self.judges[trial], &fit.ship) {
-            (Some([judge, _]), Some(ship)) => predicted(ship, judge, asked),
-            _ => Box::default(),
-        });
-        StudyRow { predicted, validation_windows_deg: windows.map(to_deg), ..row }
+        let predicted =
+            self.scenario.predictions.as_ref().map(|asked| match (&self.validation_records[trial], &fit.ship) {
+                (Some([record, _]), Some(ship)) => predicted(ship, record, asked),
+                _ => Box::default(),
+            });
+        StudyRow { predicted, validation_60_s_rmse_deg: windows.map(to_deg), ..row }
     }
 }
 
@@ -190,13 +192,13 @@ impl SharedTrials<'_> {
 fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Settings>) -> Option<IdentifiedShip> {
     let sound = |ship: &IdentifiedShip| ShipMixture::new(vec![(ship.clone(), 1.0)]).is_ok();
     let traced = |analysis: &Analysis, trials: &[Trial]| {
-        let shared = MethodIndependentResults::from_trials(trials).with_motion(Some(analysis), &[]);
+        let shared = RecordFacts::from_trials(trials).with_motion(Some(analysis), &[]);
         identified_ship::from_analysis(analysis, &shared)
     };
     match answer {
         FitAnswer::StraightOn => None,
         FitAnswer::Response(estimate) => {
-            identified_ship::from_estimate(estimate, &MethodIndependentResults::from_trials(fitted)).filter(sound)
+            identified_ship::from_estimate(estimate, &RecordFacts::from_trials(fitted)).filter(sound)
         }
         FitAnswer::Trace(analysis) => Some(traced(analysis, fitted)).filter(sound).or_else(|| {
             let withheld = [Channel::Speed, Channel::Surge, Channel::Sway];
@@ -209,14 +211,18 @@ fn ship(answer: &FitAnswer, fitted: &[Trial], settings: Option<&::trace::Setting
 
 /// Characteristics of the validation record, predicted by replaying its rudder with drawn ships at its scale, after
 /// removing the current determined from its track.
-fn predicted(ship: &IdentifiedShip, judge: &Trial, predictions: &PredictionSettings) -> Box<[PredictedCharacteristic]> {
-    let scaled = match (ship.length_m.zip(ship.speed_m_s), judge.particulars()) {
-        (Some(_), Some(of_judge)) => ship.scaled_to(of_judge.length, Some(of_judge.speed)).ok(),
+fn predicted(
+    ship: &IdentifiedShip,
+    record: &Trial,
+    predictions: &PredictionSettings,
+) -> Box<[PredictedCharacteristic]> {
+    let scaled = match (ship.length_m.zip(ship.speed_m_s), record.particulars()) {
+        (Some(_), Some(of_record)) => ship.scaled_to(of_record.length, Some(of_record.speed)).ok(),
         _ => Some(ship.clone()),
     };
     let mixture = scaled.and_then(|ship| ShipMixture::new(vec![(ship, 1.0)]).ok());
-    let (judge, current) = without_current(judge.clone(), None);
-    let replay = mixture.and_then(|ships| ships.replay(&judge, predictions.draws, current).ok().flatten());
+    let (record, current) = without_current(record.clone(), None);
+    let replay = mixture.and_then(|ships| ships.replay(&record, predictions.draws, current).ok().flatten());
     let Some(replay) = replay else { return Box::default() };
     let is_counted = |name: &str| !is_repeated_in_lengths(name, |lengths| replay.figures.contains_key(lengths));
     let figures = replay.figures.iter().filter(|(name, _)| is_counted(name));

@@ -160,7 +160,7 @@ impl<'a> FourierCurve<'a> {
         self.trial.observed_rows().next().map_or(0.0, |row| self.trial.time()[row])
     }
 
-    /// Samples of a function over the window, dense enough for a smooth curve.
+    /// Curve, in deg, of a function of time (s) in rad over the window, dense enough for a smooth line.
     fn sampled(&self, value: impl Fn(f64) -> f64) -> PlotCurve {
         let [from, to] = self.window;
         let points = self.trial.len() * POINTS_PER_ROW;

@@ -16,7 +16,7 @@ pub struct StopCheck {
 }
 
 impl StopCheck {
-    /// State before any row.
+    /// State before any row; `labels` are those of all methods, in the order of the scenario.
     pub fn new<'a>(rule: &StopRule, labels: impl Iterator<Item = &'a str>) -> Self {
         let labels: Vec<&str> = labels.collect();
         let method = rule.method.as_deref().and_then(|method| labels.iter().position(|label| *label == method));
@@ -64,7 +64,9 @@ struct FigureSums {
 }
 
 impl FigureSums {
-    /// Standard error of a statistic, %, by the delta method (Cramér 1946); `None` below 20 values.
+    /// Standard error of a statistic, %, or percentage points for a coverage; `None` below 20 values.
+    ///
+    /// Source: delta method, Cramér (1946).
     fn standard_error(&self, figure: StopFigure) -> Option<f64> {
         let Moments { count: n, mean, second, third, fourth, .. } = self.errors;
         let enough = |count: f64| (count >= 20.0).then_some(count);

@@ -1,8 +1,8 @@
 //! Plot data stored for the first trial of a cell, and the plots.
 
 use report::figures::{
-    AxisSpec, Layer, LayerKind, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Stack,
-    TickRule,
+    AxisSpec, Layer, LayerKind, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowsColumn, TickRule,
 };
 use report::number::{self, MISSING};
 use report::palette::{HEADING, INK, RECORD};
@@ -49,7 +49,7 @@ impl CurveFit {
         let fundamental = finite(self.fundamental_rad_s)
             .map(|value| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(value, 4)));
         let fit_figures = r_squared.into_iter().chain(fundamental).collect();
-        Panels { key_texts: fit_figures, ..Panels::over_time(rows) }
+        Panels { legend_texts: fit_figures, ..Panels::over_time(rows) }
     }
 }
 
@@ -141,7 +141,7 @@ impl Replays {
             let rms = replay.rms_deg.filter(|rms| rms.is_finite()).map_or_else(|| MISSING.into(), size);
             let largest = replay.residual.finite_pairs().map(|(_, y)| y.abs()).reduce(f64::max);
             let largest = largest.map_or_else(String::new, |largest| format!(", up to {}", size(largest)));
-            let solid = Pen::new(replay.origin.look().colour).width(0.8);
+            let solid = Pen::new(replay.origin.style().colour).width(0.8);
             LayeredPanel {
                 head: Some(format!("{}, rms {rms}{largest}", replay.origin.label())),
                 layers: vec![Layer::line("", replay.residual.clone(), solid)],
@@ -151,17 +151,17 @@ impl Replays {
         let residual = AxisSpec::new("residual [°]", TickRule::Angle).about_zero(RESIDUAL_ROOM);
         let across = if self.replays.len() < 3 { 1 } else { 2 };
         let multiples = self.replays.iter().map(below).collect();
-        let lower = Stack::multiples(across, AxisSpec::time(), PanelRow::zeroed(residual, 0.085), multiples);
+        let lower = PanelGroup::multiples(across, AxisSpec::time(), PanelRow::zeroed(residual, 0.085), multiples);
         let mut time = AxisSpec::time();
-        let mut stacks = vec![lower];
+        let mut groups = vec![lower];
         if self.replays.is_empty() {
-            stacks.clear();
+            groups.clear();
         } else {
             time.title.clear();
         }
-        stacks.insert(0, Stack::over(time, vec![(PanelRow::new(AxisSpec::heading(), 0.28), upper)]));
+        groups.insert(0, PanelGroup::over(time, vec![(PanelRow::new(AxisSpec::heading(), 0.28), upper)]));
         let note = (!self.replays.is_empty()).then(|| String::from("What leaves its panel is cut."));
-        Panels { stacks, note, ..Panels::default() }
+        Panels { groups, note, ..Panels::default() }
     }
 }
 
@@ -217,7 +217,7 @@ impl Intervals {
         let column = |title: String, quantity: Estimated, reference: fn(&ReferenceIndices) -> f64| {
             let row = |estimate: &MethodEstimate| {
                 let mark = |point: EstimateWithInterval| {
-                    RowItem::new("", RowKind::Mark(estimate.origin.look(), point.value, point.interval))
+                    RowItem::new("", RowKind::Mark(estimate.origin.style(), point.value, point.interval))
                 };
                 quantity(estimate).map(mark).into_iter().collect()
             };

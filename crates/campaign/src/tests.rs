@@ -151,8 +151,8 @@ fn no_number_of_a_trace_is_taken_for_another() {
     }
 }
 
-/// A distribution without ends has samples that no check foresees: such a trial is a row with its reason, and the
-/// other trials are simulated.
+/// Samples of an unbounded distribution cannot be checked in advance: a trial with an invalid sample is a row with its
+/// reason, and the other trials are simulated.
 #[test]
 fn a_drawn_trial_without_end_is_a_failed_row() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
@@ -224,7 +224,7 @@ fn numbers_are_shown_as_they_are_written() {
 #[test]
 fn the_listed_keys_of_an_effect_are_those_it_has() {
     for effect in ship::effects::all() {
-        let Some(numbers) = effect.in_file() else { continue };
+        let Some(numbers) = effect.scenario_numbers() else { continue };
         let lines: Vec<String> = numbers.iter().map(|number| format!("{} = 0.3\n", number.key)).collect();
         let text = format!(
             "\n[ship.yukun]\n[[effect]]\n[effect.{}]\n{}[manoeuvre.zig-zag]\nrudder-deg = 10\nheading-deg = 10\n[recording]\n\
@@ -237,6 +237,6 @@ fn the_listed_keys_of_an_effect_are_those_it_has() {
             assert!(message.contains("` is 0.3"), "{message}");
         }
     }
-    let listed = ship::effects::all().iter().filter(|effect| effect.in_file().is_some()).count();
+    let listed = ship::effects::all().iter().filter(|effect| effect.scenario_numbers().is_some()).count();
     assert_eq!(listed, 16, "all forms but those of measured channels");
 }

@@ -35,7 +35,7 @@ pub struct TimingLine {
     shortest_us: f64,
 }
 
-/// Durations of a study or a part of it.
+/// Durations of simulation and methods in a study or a part of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings {
     /// Moments, µs, by cell and index: 0 is the simulation, followed by the methods.
@@ -55,7 +55,7 @@ impl Timings {
         other.times.iter().for_each(|(place, times)| self.times.entry(*place).or_default().merge(times));
     }
 
-    /// Mean duration of a method over all trials, µs, with its standard error; `None` without trials.
+    /// Mean duration of a method over all trials and its standard error, µs; `None` without trials.
     pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
         let mut all = Moments::default();
         self.times.iter().filter(|((_, place), _)| *place == 1 + method).for_each(|(_, times)| all.merge(times));

@@ -12,7 +12,7 @@ use crate::scenario::Scenario;
 use crate::shard::TrialId;
 use crate::timings::Timings;
 
-/// Age of the first unsaved row at which an incomplete block is stored, which limits the loss if the program is
+/// Minimum age of the first unsaved row at which an incomplete block is stored, which limits the loss if the program is
 /// killed.
 const MIN_AGE: Duration = Duration::from_millis(250);
 /// Minimum age as a share of the run time, used if it is larger: blocks of long trials are written rarely.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::fit::CriterionVerdict;
 use crate::noise::MomentKind;
 use crate::scales::Scaling;
-use crate::trace::{Dependence, HeadingWander, Verdict};
+use crate::trace::{Dependence, HeadingErrorKind, Verdict};
 
 macro_rules! display_as_in_files {
     ($($name:ty),+) => {$(
@@ -19,4 +19,4 @@ macro_rules! display_as_in_files {
     )+};
 }
 
-display_as_in_files!(CriterionVerdict, Dependence, HeadingWander, MomentKind, Scaling, Verdict);
+display_as_in_files!(CriterionVerdict, Dependence, HeadingErrorKind, MomentKind, Scaling, Verdict);

@@ -69,7 +69,7 @@ pub enum Likeness {
 }
 
 impl Likeness {
-    /// Likeness of the ship of earlier trials to another ship.
+    /// Likeness of the ship of earlier trials (`earlier`) to the ship of the records (`ship`).
     pub fn from_particulars(earlier: &HullParticulars, ship: &HullParticulars) -> Self {
         match (ship.differing_keys(earlier).is_empty(), ship.has_equal_length(earlier)) {
             (false, _) => Self::OtherHull,
@@ -81,9 +81,10 @@ impl Likeness {
     /// Factor by which the standard deviations of the estimates of earlier trials are multiplied. The values are
     /// judgements, not tuned on results.
     ///
-    /// 1.5 for the same ship: a hull model of twenty coefficients is not the ship, so two trials of one ship differ by
-    /// more than their errors. 2 for another scale: rudder and propeller of a ship model work in another wake. 3 for
-    /// another hull: empirical formulas predict at best a third of the difference between two loadings.
+    /// 1.5 for the same ship: a hull model of twenty coefficients is an approximation, so its estimates from two trials
+    /// of one ship differ by more than their errors. 2 for another scale: rudder and propeller of a ship model work in
+    /// another wake. 3 for another hull: empirical formulas predict at best a third of the difference between two
+    /// loadings.
     pub fn factor(self) -> f64 {
         match self {
             Self::SameShip => 1.5,

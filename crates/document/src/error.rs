@@ -31,7 +31,7 @@ pub enum IdentifiedShipError {
         /// Value in the file.
         value: f64,
     },
-    /// Hull with a form or coefficients unknown to this program.
+    /// Hull with a form or coefficients unknown to this program: the form in the file.
     #[error(
         "the hull model `{0}` has a form or coefficients that this program does not have; fit or trace the record again"
     )]
@@ -42,7 +42,7 @@ pub enum IdentifiedShipError {
          trace`, or --length-m and --speed-kn here if the model has that scale"
     )]
     NoParticulars,
-    /// Formula with a constant of unknown unit, which cannot be scaled.
+    /// Formula with a constant of unknown unit, which cannot be scaled: its identifier.
     #[error(
         "the ship cannot be scaled, because the constants of the effect {0} have unknown units; write its formula with \
          the dimensionless rp, vp, delta and psi"

@@ -19,7 +19,7 @@ use crate::warning::{Warning, WarningCode, WarningSource};
 pub const SCHEMA: &str = "fit/2";
 
 /// Method shown in the plots, if it gives an estimate.
-const DRAWN_METHOD: &str = "output-error";
+const PLOTTED_METHOD: &str = "output-error";
 
 /// Record of `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -195,10 +195,11 @@ impl FitDocument {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
-    /// Method shown in the plots; `None` if no method gives an estimate.
+    /// Method shown in the plots: output error, or the first method with an estimate if output error has none; `None`
+    /// if no method has an estimate.
     pub fn plotted_method(&self) -> Option<&str> {
         let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
-        answered().find(|method| *method == DRAWN_METHOD).or_else(|| answered().next()).map(String::as_str)
+        answered().find(|method| *method == PLOTTED_METHOD).or_else(|| answered().next()).map(String::as_str)
     }
 
     /// `true` if a channel has faulty readings, or contains orders in place of angles.
@@ -261,7 +262,7 @@ pub enum ResidualKind {
 /// Usability of K and T of the records.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Belief {
+pub enum KtUsability {
     /// Usable.
     #[default]
     Yes,
@@ -274,7 +275,7 @@ pub enum Belief {
 pub struct VerdictEntry {
     /// `yes` if K and T can be used.
     #[serde(default)]
-    pub believe: Belief,
+    pub believe: KtUsability,
     /// Reason if they cannot be used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub because: Option<String>,

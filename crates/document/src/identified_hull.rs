@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_trial_specific};
+use ship::vessel::prime::{HullCoefficient, HullModel, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, PARTICULARS, Particular};
 
 use crate::error::IdentifiedShipError;
@@ -81,11 +81,11 @@ pub struct TrialHull {
     pub hull: Box<IdentifiedHull>,
     /// Gain G of the coefficients at the other loading with respect to those of the hull.
     pub gain: DMatrix<f64>,
-    /// Covariance of the coefficients given those of the hull.
+    /// Covariance of the coefficients at the other loading given those of the hull, by rows.
     pub conditional_covariance: Vec<Vec<f64>>,
 }
 
-/// Particulars of a hull by their keys; missing ones are omitted.
+/// Particulars of a hull by their keys; unknown particulars are omitted.
 pub fn keyed_particulars(particulars: &HullParticulars) -> BTreeMap<String, f64> {
     PARTICULARS.iter().filter_map(|item| Some((item.key.to_owned(), item.get(particulars)?))).collect()
 }
@@ -97,9 +97,9 @@ pub fn matrix_rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
 
 impl IdentifiedHull {
     /// Hull form. Fails for an unknown form or particular, and if the coefficients are not those of the form.
-    pub fn form(&self) -> Result<HullForm, IdentifiedShipError> {
+    pub fn form(&self) -> Result<HullModel, IdentifiedShipError> {
         let refused = || self.unknown_model_error();
-        let forms = HullForm::candidates(Some(&self.particulars()?));
+        let forms = HullModel::candidates(Some(&self.particulars()?));
         let form = forms.into_iter().find(|form| form.as_str() == self.form).ok_or_else(refused)?;
         let keys = self.coefficients.iter().map(|stored| stored.key.as_str());
         let are_same = form.coefficients().iter().map(|coefficient| coefficient.key).eq(keys);
@@ -115,12 +115,12 @@ impl IdentifiedHull {
         Ok(particulars)
     }
 
-    /// Error of an unknown hull model.
+    /// Error of a form or coefficients unknown to this program, with the form of this hull.
     pub fn unknown_model_error(&self) -> IdentifiedShipError {
         IdentifiedShipError::Hull(self.form.clone())
     }
 
-    /// Values of the coefficients.
+    /// Estimates of the coefficients, dimensionless, in the order of the form.
     pub fn values(&self) -> Vec<f64> {
         self.coefficients.iter().map(|coefficient| coefficient.value).collect()
     }

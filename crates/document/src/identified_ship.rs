@@ -126,19 +126,19 @@ impl WeightedStructure {
 /// Relative tolerance of equal lengths.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// `true` if two lengths are equal within `LENGTH_TOLERANCE`.
+/// `true` if two lengths differ by less than 0.1 %.
 pub fn is_same_length(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() < LENGTH_TOLERANCE
 }
 
 impl IdentifiedShip {
-    /// Length and approach speed; `None` if one of them is unknown.
+    /// Length (m) and approach speed (m/s); `None` if one of them is unknown.
     pub fn particulars(&self) -> Option<Particulars> {
         Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
     }
 
     /// Ship scaled to another length (m) and approach speed (m/s): times are multiplied by (L₂/U₂)/(L₁/U₁), lengths by
-    /// L₂/L₁, and dimensionless numbers (K′, T′ and all others) stay. With U ~ √L, the default, this is the scaling of
+    /// L₂/L₁, and dimensionless numbers, such as K′ and T′, stay. `None` for a speed proportional to √L, the scaling of
     /// Froude (1868).
     ///
     /// The random moment scales with the ship, as if the sea were scaled. Fails if length or speed of the ship is

@@ -1,6 +1,6 @@
 //! Display names of effects, records and figures of merit, from their identifiers in files.
 
-/// Display names that are not the identifier with blanks.
+/// Effects whose display name is not their identifier with blanks: identifier and display name.
 const EFFECTS: [(&str, &str); 5] = [
     ("port_starboard_asymmetry", "port-starboard asymmetry"),
     ("rudder_deadband", "rudder dead band"),
@@ -9,7 +9,7 @@ const EFFECTS: [(&str, &str); 5] = [
     ("wave_yaw", "yaw in waves"),
 ];
 
-/// Physics of every listed effect, as a sentence without its full stop.
+/// Physics of the effects of the program by their identifiers: a sentence without its full stop.
 const PHYSICS: [(&str, &str); 12] = [
     ("second_order", "sway responds to the rudder with its own time constant, and yaws the ship"),
     ("sway_coupling_measured", "the ship drifts in a turn, and the drift yaws her"),
@@ -42,7 +42,7 @@ pub fn effect(id: &str) -> String {
     listed.map_or_else(|| with_blanks(id), |(_, name)| (*name).to_owned())
 }
 
-/// Physics of a listed effect as a sentence without its full stop; `None` for a formula.
+/// Physics of an effect as a sentence without its full stop; `None` for an effect given as a formula.
 pub fn physics(id: &str) -> Option<&'static str> {
     PHYSICS.iter().find(|(key, _)| *key == id).map(|(_, sentence)| *sentence)
 }

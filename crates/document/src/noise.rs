@@ -96,7 +96,8 @@ impl RandomMoment {
         self == Self::None
     }
 
-    /// Moment of a ship whose times are multiplied by `second`; as a rudder angle it stays the same.
+    /// Moment on a ship whose times are multiplied by `second`: the equivalent rudder angle stays the same, so the size
+    /// changes with the time in its unit.
     #[must_use]
     pub fn scaled(self, second: f64) -> Self {
         let factor = match self {
@@ -109,7 +110,8 @@ impl RandomMoment {
 }
 
 impl HeadingNoise {
-    /// Mean noise of records whose moments have one kind and one correlation time; `None` without records.
+    /// Noise with the mean heading standard deviation and the mean moment size of records whose moments have one kind
+    /// and one correlation time; `None` without records.
     pub fn mean(records: &[Self]) -> Option<Self> {
         let first = records.first()?;
         let mean = |value: fn(&Self) -> f64| records.iter().map(value).sum::<f64>() / records.len() as f64;

@@ -44,17 +44,19 @@ impl Quantity {
         }
     }
 
-    /// Difference of two quantities with independent errors, without an interval.
+    /// Difference of two quantities with independent errors, without an interval; `sd` is `None` if either `sd` is.
     pub fn minus(self, other: Self) -> Self {
         Self::new(self.value - other.value, root_sum_of_squares(self.sd, other.sd))
     }
 
-    /// Quantity with an additional independent error of standard deviation `sd`, without an interval.
+    /// Quantity with an additional independent error of standard deviation `sd`, without an interval; the result has no
+    /// `sd` if either is `None`.
     pub fn widened(self, sd: Option<f64>) -> Self {
         Self::new(self.value, root_sum_of_squares(self.sd, sd))
     }
 
-    /// Mean of quantities with independent errors, without an interval; `None` for an empty list.
+    /// Mean of quantities with independent errors, without an interval, and without `sd` if one quantity has none;
+    /// `None` for an empty list.
     pub fn mean(quantities: &[Self]) -> Option<Self> {
         if quantities.is_empty() {
             return None;

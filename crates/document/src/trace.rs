@@ -19,15 +19,15 @@ mod entries;
 mod errors;
 
 pub use entries::{
-    Dependence, DisturbanceEntry, Indices, LocatedEntry, MissingMomentEntry, PanelEntry, ParameterEntry, PrimeEntry,
-    PrimeIndices, RecordEntry, RecordErrors, StairEntry, UnexplainedEntry,
+    ChannelCurveEntry, Dependence, DisturbanceEntry, InclusionStepEntry, Indices, LocatedMomentEntry,
+    MissingMomentEntry, ParameterEntry, PrimeEntry, PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
 };
-pub use errors::{BeforeAfter, ErrorEntry, ErrorsEntry, HorizonEntry};
+pub use errors::{HorizonEntry, ModelReplayErrors, RecordReplayErrors, ReplayErrorLists};
 
 /// Name and version of the schema of `trace.json`.
 pub const SCHEMA: &str = "trace/4";
 
-/// Maximum number of record names in a title; one further name is written out, too.
+/// Number of names in the title of more than three records; up to three records are all named.
 const MAX_TITLE_NAMES: usize = 2;
 
 /// Verdict of a trace.
@@ -69,7 +69,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Text in reports.
+    /// Text of the outcome in reports, such as `not named`.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Added => "added",
@@ -222,7 +222,7 @@ pub struct WhitenessEntry {
 /// Kind of a correlated heading error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum HeadingWander {
+pub enum HeadingErrorKind {
     /// Compass error, of first order.
     Compass,
     /// Smooth error of the model.
@@ -242,7 +242,7 @@ pub struct RecordNoiseEntry {
     pub heading_correlation_s: Option<f64>,
     /// Kind of that error: `compass` (first order) or `model` (smooth).
     #[schemars(with = "Option<String>")]
-    pub heading_wander: Option<HeadingWander>,
+    pub heading_wander: Option<HeadingErrorKind>,
     /// Kind of the random moment.
     pub moment: MomentKind,
     /// Standard deviation of gusts, of the mean of a white moment over one second, or of the change of a walk in one
@@ -293,7 +293,7 @@ pub struct Document {
     /// Random moment in addition to the named effects.
     pub disturbance: Option<DisturbanceEntry>,
     /// Located shapes that belong to no listed effect, clearest first.
-    pub located: Vec<LocatedEntry>,
+    pub located: Vec<LocatedMomentEntry>,
     /// All candidate effects with their outcomes.
     pub candidates: Vec<CandidateEntry>,
     /// Structures, the most probable first.
@@ -303,7 +303,7 @@ pub struct Document {
     /// Unexplained residual.
     pub unexplained: UnexplainedEntry,
     /// Replay errors before and after on every record.
-    pub error: ErrorEntry,
+    pub error: ReplayErrorLists,
     /// Whiteness of the residual before and after.
     pub residual: ResidualWhitenessEntry,
     /// Noise of every fitted record.
@@ -326,7 +326,7 @@ pub struct TraceDocument {
     pub missing_moment: Vec<MissingMomentEntry>,
     /// Replay errors of the base and after each added effect of the most probable structure; empty if it has none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub staircase: Vec<StairEntry>,
+    pub staircase: Vec<InclusionStepEntry>,
     /// Amplitude of the fitted zig-zags, to which K and T of `base` belong; those of `model` belong to small motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<Amplitude>,
@@ -347,7 +347,7 @@ pub struct TraceDocument {
 }
 
 impl TraceDocument {
-    /// Length and speed to which dimensional numbers refer, if known.
+    /// Length and approach speed to which dimensional numbers refer; `None` if no record has both.
     pub fn particulars(&self) -> Option<Particulars> {
         self.records.iter().find_map(RecordEntry::particulars)
     }
@@ -357,7 +357,7 @@ impl TraceDocument {
         self.records.iter().map(|record| record.name.clone()).collect()
     }
 
-    /// Title: display names of the fitted records; of many records only the first two are named.
+    /// Title: display names of the fitted records; of more than three records the first two, and the number of others.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
         let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();
@@ -367,7 +367,7 @@ impl TraceDocument {
         }
     }
 
-    /// Errors on fitted records, and on records that were held out or omitted in turn.
+    /// Replay errors in two lists: on fitted records, and on records that were held out or left out in turn.
     pub fn errors(&self) -> (Vec<RecordErrors<'_>>, Vec<RecordErrors<'_>>) {
         let error = &self.trace.error;
         let (mut fitted, mut unfitted) = (Vec::new(), Vec::new());

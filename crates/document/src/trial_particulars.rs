@@ -23,7 +23,7 @@ pub struct TrialParticularsEntry {
 }
 
 impl TrialParticularsEntry {
-    /// `true` if there is no declaration.
+    /// `true` if nothing is declared.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

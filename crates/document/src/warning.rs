@@ -177,7 +177,7 @@ pub enum WarningSource {
 }
 
 impl WarningSource {
-    /// Warnings with this source.
+    /// The same warnings with this source in place of theirs.
     pub fn attach_to(&self, warnings: impl IntoIterator<Item = Warning>) -> impl Iterator<Item = Warning> {
         warnings.into_iter().map(|warning| Warning { source: self.clone(), ..warning })
     }

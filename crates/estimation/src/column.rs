@@ -64,7 +64,7 @@ pub struct ColumnProjection {
     /// Mean of the column.
     pub mean: f64,
     /// Component along the unit column.
-    pub share: f64,
+    pub component: f64,
 }
 
 /// Subtracts from a column, in place, its projection on the constant and on `unit` (length 1, mean 0, as many rows),
@@ -88,11 +88,11 @@ impl Kernel for Project<'_> {
         for x in column.iter_mut() {
             *x -= mean;
         }
-        let share = dot(unit, column);
+        let component = dot(unit, column);
         for (x, u) in column.iter_mut().zip(unit) {
-            *x -= share * u;
+            *x -= component * u;
         }
-        ColumnProjection { mean, share }
+        ColumnProjection { mean, component }
     }
 }
 
@@ -187,7 +187,7 @@ mod tests {
         assert_relative_eq!(sum(&projected), 0.0, epsilon = 1e-12);
         assert_relative_eq!(dot(&unit, &projected), 0.0, epsilon = 1e-12);
         for (row, (whole, residual)) in column.iter().zip(&projected).enumerate() {
-            assert_relative_eq!(*whole, residual + removed.mean + removed.share * unit[row], epsilon = 1e-12);
+            assert_relative_eq!(*whole, residual + removed.mean + removed.component * unit[row], epsilon = 1e-12);
         }
     }
 

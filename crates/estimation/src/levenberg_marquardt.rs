@@ -1,7 +1,7 @@
 //! Nonlinear least squares between bounds by damped Gauss–Newton steps.
 //!
 //! J(θ) = Σ e², plus prior terms in θ, if any. The caller computes e and its exact derivatives; this module makes the
-//! steps. Unknowns are scaled so that the second derivatives are one; an unknown at its bound is held if J decreases
+//! steps. Unknowns are scaled so that the second derivatives are 1; an unknown at its bound is held if J decreases
 //! beyond the bound. Work space is allocated once per search.
 //!
 //! Sources: Levenberg (1944), Quarterly of Applied Mathematics 2:164-168; Marquardt (1963), Journal of the Society for
@@ -28,7 +28,7 @@ pub struct NormalEquations {
     /// Matrix XᵀX with X = −∂e/∂θ: second derivatives of J/2 (Gauss–Newton).
     pub matrix: DMatrix<f64>,
     /// Right-hand side Xᵀe: first derivatives of −J/2.
-    pub gradient: DVector<f64>,
+    pub right_hand_side: DVector<f64>,
 }
 
 /// Settings of a search: damping schedule and stopping rules.
@@ -71,7 +71,7 @@ pub enum SearchEnd {
 
 /// Result of a search: the point at which it stopped.
 #[derive(Debug, Clone)]
-pub struct Minimum {
+pub struct SearchResult {
     /// Estimate θ.
     pub estimate: DVector<f64>,
     /// Value of J.
@@ -90,18 +90,18 @@ const RIDGE: f64 = 1e-11;
 impl NormalEquations {
     /// Normal equations with this number of unknowns, all zero.
     pub fn zeros(unknowns: usize) -> Self {
-        Self { matrix: DMatrix::zeros(unknowns, unknowns), gradient: DVector::zeros(unknowns) }
+        Self { matrix: DMatrix::zeros(unknowns, unknowns), right_hand_side: DVector::zeros(unknowns) }
     }
 
     /// `true` if an unknown with this value lies at a bound, beyond which J decreases.
     pub fn is_bound_active(&self, unknown: usize, value: f64, [low, high]: [f64; 2]) -> bool {
-        (value <= low && self.gradient[unknown] < 0.0) || (value >= high && self.gradient[unknown] > 0.0)
+        (value <= low && self.right_hand_side[unknown] < 0.0) || (value >= high && self.right_hand_side[unknown] > 0.0)
     }
 }
 
 /// Work space of a search.
 struct StepWorkspace {
-    /// Inverse square roots of the second derivatives; one if J does not depend on the unknown.
+    /// Inverse square roots of the second derivatives; 1 if J does not depend on the unknown.
     scale: DVector<f64>,
     held: Vec<bool>,
     right: DVector<f64>,
@@ -122,7 +122,8 @@ impl StepWorkspace {
             let curvature = normal.matrix[(k, k)];
             self.scale[k] = if curvature > 0.0 { curvature.sqrt().recip() } else { 1.0 };
             self.held[k] = normal.is_bound_active(k, at[k], problem.bounds(k));
-            self.right[k] = if self.held[k] || curvature <= 0.0 { 0.0 } else { normal.gradient[k] * self.scale[k] };
+            self.right[k] =
+                if self.held[k] || curvature <= 0.0 { 0.0 } else { normal.right_hand_side[k] * self.scale[k] };
         }
     }
 
@@ -153,8 +154,8 @@ impl StepWorkspace {
     }
 }
 
-/// Minimum of J between the bounds, from a starting point.
-pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &SearchSettings) -> Minimum {
+/// Local minimum of J between the bounds, searched from `start`; the search may stop before it, see [`SearchEnd`].
+pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &SearchSettings) -> SearchResult {
     let unknowns = start.len();
     let (mut at, mut next) = (start, DVector::zeros(unknowns));
     let mut normal = NormalEquations::zeros(unknowns);
@@ -202,7 +203,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
             end = SearchEnd::Converged;
         }
     }
-    Minimum { estimate: at, value, normal, steps, end }
+    SearchResult { estimate: at, value, normal, steps, end }
 }
 
 #[cfg(test)]
@@ -241,7 +242,7 @@ mod tests {
             let e = DVector::from_vec(vec![10.0 * (at[1] - at[0] * at[0]), 1.0 - at[0]]);
             let x = DMatrix::from_row_slice(2, 2, &[20.0 * at[0], -10.0, 1.0, 0.0]);
             normal.matrix = x.tr_mul(&x);
-            normal.gradient = x.tr_mul(&e);
+            normal.right_hand_side = x.tr_mul(&e);
             self.value(at)
         }
     }

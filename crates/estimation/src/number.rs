@@ -42,14 +42,14 @@ pub trait Real:
     fn powf(self, exponent: Self) -> Self;
 
     /// Sine and cosine.
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value().sin_cos();
         (self.lift_unary(sin, cos), self.lift_unary(cos, -sin))
     }
 
     /// Angle of the point (x, y), rad, with this number as y.
-    #[inline]
+    #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let square = (self.value() * self.value() + x.value() * x.value()).max(f64::MIN_POSITIVE);
         let (by_y, by_x) = (x.value() / square, -self.value() / square);
@@ -57,7 +57,7 @@ pub trait Real:
     }
 
     /// Root √(x² + y²), which must not be zero.
-    #[inline]
+    #[inline(always)]
     fn hypot(self, other: Self) -> Self {
         let root = self.value().hypot(other.value());
         let (by_x, by_y) = (self.value() / root, other.value() / root);
@@ -65,34 +65,34 @@ pub trait Real:
     }
 
     /// Hyperbolic tangent.
-    #[inline]
+    #[inline(always)]
     fn tanh(self) -> Self {
         let tanh = self.value().tanh();
         self.lift_unary(tanh, 1.0 - tanh * tanh)
     }
 
     /// Exponential.
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         let exp = self.value().exp();
         self.lift_unary(exp, exp)
     }
 
     /// Natural logarithm of a positive number.
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         self.lift_unary(self.value().ln(), self.value().recip())
     }
 
     /// Square root of a positive number.
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value().sqrt();
         self.lift_unary(root, 0.5 / root)
     }
 
     /// Integer power.
-    #[inline]
+    #[inline(always)]
     fn powi(self, exponent: i32) -> Self {
         if exponent == 0 {
             return Self::from(1.0);
@@ -101,16 +101,19 @@ pub trait Real:
     }
 
     /// Magnitude.
+    #[inline(always)]
     fn abs(self) -> Self {
         if self.value() < 0.0 { -self } else { self }
     }
 
     /// Maximum of this number and a constant; this number, with its derivatives, if they are equal.
+    #[inline(always)]
     fn at_least(self, least: f64) -> Self {
         if self.value() >= least { self } else { Self::from(least) }
     }
 
     /// Number clamped to [least, most].
+    #[inline(always)]
     fn clamped(self, least: Self, most: Self) -> Self {
         if self.value() < least.value() {
             least
@@ -271,13 +274,18 @@ impl<const N: usize> Real for Dual<N> {
     }
 
     #[inline(always)]
-    fn lift_unary(self, value: f64, slope: f64) -> Self {
-        Self { value, derivatives: self.derivatives.map(|d| slope * d) }
+    fn lift_unary(mut self, value: f64, slope: f64) -> Self {
+        // In place: `array::map` copies.
+        self.derivatives.iter_mut().for_each(|d| *d *= slope);
+        self.value = value;
+        self
     }
 
     #[inline(always)]
-    fn lift_binary(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
-        Self { value, derivatives: std::array::from_fn(|k| by(self.derivatives[k], other.derivatives[k])) }
+    fn lift_binary(mut self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
+        self.derivatives.iter_mut().zip(&other.derivatives).for_each(|(x, y)| *x = by(*x, *y));
+        self.value = value;
+        self
     }
 
     fn powf(self, exponent: Self) -> Self {

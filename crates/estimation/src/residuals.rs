@@ -58,10 +58,10 @@ pub struct WhitenessTest {
     pub p_value: f64,
 }
 
-/// Maximum lag of the whiteness test, in grid steps, however many residuals there are.
+/// Maximum lag of the whiteness test of a long series, in grid steps.
 const MAX_LAG: usize = 20;
 
-/// Maximum lag of the whiteness test of `count` residuals, in grid steps.
+/// Maximum lag of the whiteness test of `count` residuals, in grid steps: 20, or a quarter of `count` if that is less.
 pub fn whiteness_lags(count: usize) -> usize {
     MAX_LAG.min(count / 4)
 }
@@ -141,8 +141,8 @@ pub struct SpectralLine {
 /// Maximum number of grid points per value for which a spectrum is computed.
 const MAX_POINTS_PER_VALUE: usize = 16;
 
-/// Periodogram: the share of the mean square about the mean at every multiple of the frequency of one period per
-/// series.
+/// Periodogram: the share of the mean square about the mean at 1, 2, … periods per series, up to the Nyquist frequency
+/// of the grid.
 ///
 /// With missing values, the periodogram of Lomb (1976) and Scargle (1982): the share explained by a least-squares sine.
 /// On an even grid its sums are Fourier transforms of the values and of the pattern of gaps. Empty for fewer than four
@@ -189,9 +189,9 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     part(by_cos * cos + by_sin * sin, 0.5 * (n + length)) + part(by_sin * cos - by_cos * sin, 0.5 * (n - length))
 }
 
-/// p-value of constant variance: probability that normal numbers with one variance have a cumulative sum of squares as
+/// p-value of constant variance: probability that normal numbers of equal variance have a cumulative sum of squares as
 /// far from a straight line (CUSUM of squares, Brown, Durbin and Evans 1975), or a single number as large. It is an
-/// upper bound (Bonferroni), and 1 if all numbers are zero or one is not finite.
+/// upper bound (Bonferroni), and 1 if all numbers are zero or any is not finite.
 pub fn constant_variance_p_value(numbers: &[f64]) -> f64 {
     let n = numbers.len() as f64;
     let total: f64 = numbers.iter().map(|x| x * x).sum();

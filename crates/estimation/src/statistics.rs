@@ -3,7 +3,7 @@
 //! Sources: Hyndman and Fan (1996), The American Statistician 50:361-365; Wilson (1927), Journal of the American
 //! Statistical Association 22:209-212.
 
-/// Maximum number of values that are sorted for their median: for so few a selection costs more.
+/// Maximum number of values that are sorted for their median; for more values a selection is faster.
 const MAX_SORTED: usize = 16;
 
 /// Median; for an even number of values the mean of the two middle values, so that the median of a mirrored set is

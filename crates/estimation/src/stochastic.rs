@@ -9,8 +9,9 @@ use crate::kalman::{Filter, MAX_STATES, StateSensor, Step, System};
 use crate::with_states;
 
 impl<const N: usize> Step<N> {
-    /// Exact step over `h` seconds of x' = G x + w with white noise w of the given intensity on the last state of G
-    /// (Van Loan 1978). States beyond the states of G are zero.
+    /// Exact step over `h` seconds of x' = G x + w with white noise w on the last state of G (Van Loan 1978).
+    /// `intensity` is the spectral density of w: the variance that it adds to the last state per second. G has 1 to `N`
+    /// states; states beyond are zero.
     pub fn from_generator(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
         let m = generator.nrows();
         let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
@@ -37,7 +38,7 @@ impl<const N: usize> Step<N> {
 }
 
 impl<const N: usize> System<N> {
-    /// Sample path: the readings without sensor noise, from standard normal numbers.
+    /// Readings along a random sample path, without sensor noise; `normal` draws standard normal numbers.
     pub fn sample_path(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
         let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.process_noise)).collect();
         let mut draw = |root: &[[f64; N]; N]| -> [f64; N] {

@@ -4,7 +4,7 @@
 //!
 //! log Z_R − log Z = −½ Δᵀ Σ_ss⁻¹ Δ − log p(R neutral) − ½ log |2π Σ_RR|,
 //!
-//! with the distance Δ of the amplitudes (sizes) of R from their neutral values, the posterior covariance Σ of all
+//! with the distance Δ of the amplitudes of R from their neutral values, the posterior covariance Σ of all
 //! fitted unknowns (Σ_ss its block of these amplitudes, Σ_RR its block of all unknowns of R), and the prior density p.
 //! It is the Savage–Dickey density ratio for the amplitudes; shape parameters are unconstrained without their amplitude
 //! and count with their prior range.
@@ -19,9 +19,9 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Debug, Clone)]
 pub struct RemovableTerm {
     /// Indices of the amplitudes of the term among the unknowns, each with its distance from the neutral value.
-    pub sizes: Vec<(usize, f64)>,
+    pub amplitudes: Vec<(usize, f64)>,
     /// Indices of the shape parameters of the term among the unknowns.
-    pub shapes: Vec<usize>,
+    pub shape_parameters: Vec<usize>,
     /// Log prior density at neutral amplitudes and fitted shape parameters.
     pub log_prior: f64,
     /// Log prior odds of inclusion.
@@ -77,15 +77,15 @@ impl<'a> GrowingFactor<'a> {
     }
 }
 
-/// Log evidence plus log prior odds of every subset, relative to the full model with even odds. Bit k of the index is
-/// set if term k is included.
+/// Log evidence plus log prior odds of all 2^m subsets of m terms, relative to the full model with even odds. Bit k of
+/// the index is set if term k is included.
 ///
 /// `covariance` is the posterior covariance of the unknowns. `terms` has at most [`MAX_SUBSET_TERMS`] terms.
 pub fn subset_log_weights(covariance: &DMatrix<f64>, terms: &[RemovableTerm]) -> Vec<f64> {
     let mut weights = vec![0.0; 1 << terms.len()];
     let mut walk = SubsetWalk {
         terms,
-        sizes: GrowingFactor::new(covariance),
+        amplitudes: GrowingFactor::new(covariance),
         all: GrowingFactor::new(covariance),
         weights: &mut weights,
     };
@@ -96,7 +96,7 @@ pub fn subset_log_weights(covariance: &DMatrix<f64>, terms: &[RemovableTerm]) ->
 struct SubsetWalk<'a> {
     terms: &'a [RemovableTerm],
     /// Factor over the amplitudes of the removed terms.
-    sizes: GrowingFactor<'a>,
+    amplitudes: GrowingFactor<'a>,
     /// Factor over all unknowns of the removed terms.
     all: GrowingFactor<'a>,
     weights: &'a mut [f64],
@@ -106,23 +106,23 @@ impl SubsetWalk<'_> {
     fn descend(&mut self, next: usize, subset: usize, log_prior: f64, log_odds: f64) {
         let Some(term) = self.terms.get(next) else {
             let count = self.all.unknowns.len() as f64;
-            let square = self.sizes.square.last().unwrap_or(&0.0);
+            let square = self.amplitudes.square.last().unwrap_or(&0.0);
             let determinant = self.all.log_determinant.last().unwrap_or(&0.0);
             let evidence = -0.5 * (square + determinant + count * std::f64::consts::TAU.ln()) - log_prior;
             self.weights[subset] = evidence + log_odds;
             return;
         };
         self.descend(next + 1, subset | 1 << next, log_prior, log_odds + term.log_odds);
-        let [sizes, all] = [self.sizes.unknowns.len(), self.all.unknowns.len()];
-        for &(unknown, distance) in &term.sizes {
-            self.sizes.push(unknown, distance);
+        let [amplitudes, all] = [self.amplitudes.unknowns.len(), self.all.unknowns.len()];
+        for &(unknown, distance) in &term.amplitudes {
+            self.amplitudes.push(unknown, distance);
             self.all.push(unknown, 0.0);
         }
-        for &unknown in &term.shapes {
+        for &unknown in &term.shape_parameters {
             self.all.push(unknown, 0.0);
         }
         self.descend(next + 1, subset, log_prior + term.log_prior, log_odds);
-        self.sizes.truncate(sizes);
+        self.amplitudes.truncate(amplitudes);
         self.all.truncate(all);
     }
 }
@@ -130,15 +130,16 @@ impl SubsetWalk<'_> {
 /// Conditional mean of the unknowns if the amplitudes of the removed terms are neutral (quadratic approximation about
 /// `at`); `at` itself if the covariance of these amplitudes is not positive definite.
 pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&RemovableTerm]) -> DVector<f64> {
-    let sizes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.sizes.iter().copied()).collect();
-    let block = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| covariance[(sizes[i].0, sizes[j].0)]);
-    let distance = DVector::from_fn(sizes.len(), |i, _| sizes[i].1);
+    let amplitudes: Vec<(usize, f64)> = removed.iter().flat_map(|term| term.amplitudes.iter().copied()).collect();
+    let block =
+        DMatrix::from_fn(amplitudes.len(), amplitudes.len(), |i, j| covariance[(amplitudes[i].0, amplitudes[j].0)]);
+    let distance = DVector::from_fn(amplitudes.len(), |i, _| amplitudes[i].1);
     let ridge = DMatrix::from_diagonal(&block.diagonal().map(|x| 1e-12 * x));
     let Some(factor) = (block + ridge).cholesky() else { return at.clone() };
     let shares = factor.solve(&distance);
     DVector::from_fn(at.len(), |k, _| {
         at[k]
-            - sizes
+            - amplitudes
                 .iter()
                 .zip(shares.iter())
                 .map(|((unknown, _), share)| covariance[(k, *unknown)] * share)
@@ -148,7 +149,7 @@ pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &
 
 /// Conditions a covariance, in place, on neutral amplitudes of a term.
 pub fn condition_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
-    for &(unknown, _) in &out.sizes {
+    for &(unknown, _) in &out.amplitudes {
         let column: DVector<f64> = covariance.column(unknown).into();
         let variance = column[unknown];
         if variance > 0.0 {
@@ -218,7 +219,12 @@ mod tests {
 
         fn removable(&self, mean: &DVector<f64>, k: usize) -> RemovableTerm {
             let log_prior = -0.5 * ((self.mean[k] / self.sd[k]).powi(2) + std::f64::consts::TAU.ln()) - self.sd[k].ln();
-            RemovableTerm { sizes: vec![(k + 1, mean[k + 1])], shapes: Vec::new(), log_prior, log_odds: 0.0 }
+            RemovableTerm {
+                amplitudes: vec![(k + 1, mean[k + 1])],
+                shape_parameters: Vec::new(),
+                log_prior,
+                log_odds: 0.0,
+            }
         }
     }
 

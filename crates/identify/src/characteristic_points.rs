@@ -108,8 +108,8 @@ pub struct CharacteristicPoints {
 }
 
 impl CharacteristicPoints {
-    /// Half width of the local fits in half periods. A parabola follows a peak over a shorter time than a cubic follows
-    /// the heading, and only equation (8) is sensitive to noise of the yaw rate, which is a regressor there.
+    /// Half width of the local fits, as a share of half a zig-zag period. A parabola follows a peak over a shorter time
+    /// than a cubic follows the heading, and only equation (8) is sensitive to noise of the yaw rate, its regressor.
     fn width_share(&self) -> f64 {
         match self.settings.variant {
             Variant::LeastSquares | Variant::ThreePeaks => 0.07,
@@ -170,7 +170,7 @@ impl Identifier for CharacteristicPoints {
         Ok(Estimate {
             response,
             uncertainty,
-            robust: None,
+            robust_covariance: None,
             stop: StopReason::Direct,
             evaluations: 1,
             noise: None,

@@ -104,7 +104,7 @@ pub enum IdentifyError {
         K_over_T: f64,
     },
     /// Reason why an outside estimator gave no estimate, on one printable line, from
-    /// [`IdentifyError::external_estimator`].
+    /// [`IdentifyError::from_outside_message`].
     #[error("outside: {0}")]
     Outside(String),
 }
@@ -126,7 +126,7 @@ const MAX_REASON_CHARS: usize = 80;
 impl IdentifyError {
     /// Failure of an outside estimator with its message, on one line of at most 80 characters. Runs of blanks become a
     /// single blank, and invisible characters are shown as escapes.
-    pub fn external_estimator(message: &str) -> Self {
+    pub fn from_outside_message(message: &str) -> Self {
         let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
         let shown = |c: char| match c {
             ' '..='~' => c.to_string(),
@@ -148,7 +148,7 @@ impl IdentifyError {
         Self::Outside(if reason.is_empty() { "no reason given".to_owned() } else { reason })
     }
 
-    /// Short name for tables and rows.
+    /// Kind of the failure, in kebab-case, for tables and rows.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::NoTrial => "no-trial",
@@ -165,7 +165,7 @@ impl IdentifyError {
         }
     }
 
-    /// Text in a row: the short name, and after `outside` the reason.
+    /// Text of the failure in a row of a study: its kind, and for an outside estimator the reason as well.
     pub fn row_text(&self) -> Cow<'static, str> {
         match self {
             Self::Outside(_) => self.to_string().into(),
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn an_outside_message_is_a_single_short_line() {
-        let row = |message: &str| IdentifyError::external_estimator(message).row_text().into_owned();
+        let row = |message: &str| IdentifyError::from_outside_message(message).row_text().into_owned();
         assert_eq!(row(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
         assert_eq!(row("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
         assert_eq!(row(" \n"), "outside: no reason given");

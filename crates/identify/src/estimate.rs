@@ -64,7 +64,7 @@ pub enum Uncertainty {
         /// Meaning of the intervals, as text.
         meaning: &'static str,
     },
-    /// No uncertainty.
+    /// No uncertainty is estimated.
     None {
         /// Reason, as text.
         reason: &'static str,
@@ -102,7 +102,7 @@ pub struct Estimate {
     /// Uncertainty of the response, valid if the residual is white.
     pub uncertainty: Uncertainty,
     /// Covariance valid for a coloured residual as well (Newey and West 1987); `None` if the method has none.
-    pub robust: Option<Covariance>,
+    pub robust_covariance: Option<Covariance>,
     /// Reason why the method stopped.
     pub stop: StopReason,
     /// Number of model evaluations (simulations or solved systems).
@@ -121,7 +121,8 @@ impl Estimate {
         self.diagnostics.iter().find(|(label, _)| *label == name).map(|(_, value)| *value)
     }
 
-    /// Turning ability index K, 1/s, with standard deviation and 95 % interval.
+    /// Turning ability index K, 1/s, with standard deviation and 95 % interval; each is `None` if it is not estimated
+    /// or not bounded.
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
@@ -130,7 +131,8 @@ impl Estimate {
         }
     }
 
-    /// Time constant T, s, with standard deviation and 95 % interval.
+    /// Time constant T, s, with standard deviation and 95 % interval; each is `None` if it is not estimated or not
+    /// bounded.
     pub fn T(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
@@ -139,7 +141,8 @@ impl Estimate {
         }
     }
 
-    /// Rudder bias δ_r, rad, with standard deviation and 95 % interval.
+    /// Rudder bias δ_r, rad, with standard deviation and 95 % interval; each is `None` if it is not estimated or not
+    /// bounded.
     pub fn rudder_bias(&self) -> Quantity {
         let value = self.response.rudder_bias;
         match &self.uncertainty {
@@ -151,7 +154,7 @@ impl Estimate {
 }
 
 impl Covariance {
-    /// K (1/s) and T (s) of a response with errors from this covariance.
+    /// K (1/s) and T (s) of a response, with standard deviations and 95 % intervals from this covariance.
     pub fn indices(&self, response: &FirstOrder) -> (Quantity, Quantity) {
         (index_K(response, self), index_T(response, self))
     }
@@ -210,7 +213,7 @@ fn quantile95(degrees_of_freedom: Option<f64>) -> f64 {
     }
 }
 
-/// Quantity with its standard deviation and interval; unbounded parts are dropped.
+/// Quantity with its standard deviation and interval; either is `None` if it is not finite.
 fn with_error(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
     let ci95 = ci95.filter(|ends| ends.iter().all(|end| end.is_finite()));
     Quantity { value, sd: sd.filter(|sd| sd.is_finite()), ci95 }

@@ -290,7 +290,7 @@ impl Identifier for FourierProjected {
         Ok(Estimate {
             response: solution.response,
             uncertainty: Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: Some(freedom) }),
-            robust: None,
+            robust_covariance: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + 1,
             noise: None,
@@ -305,7 +305,8 @@ fn gcv(rows: f64, rss: f64, harmonics: f64) -> f64 {
     rows * rss / (rows - 2.0 * harmonics - 1.0).powi(2)
 }
 
-/// The fitted series; fails above [`MAX_TRUSTED_CONDITION`], where the coefficients of its basis cancel each other.
+/// Fitted series with a well-conditioned basis. Fails with [`IdentifyError::Singular`] above a condition number of
+/// [`MAX_TRUSTED_CONDITION`], where the coefficients cancel each other.
 fn accept(fitted: FittedSeries) -> Result<FittedSeries, IdentifyError> {
     let (condition, limit) = (fitted.curve.condition, MAX_TRUSTED_CONDITION);
     if condition <= limit { Ok(fitted) } else { Err(IdentifyError::Singular { condition, limit }) }

@@ -138,24 +138,24 @@ impl FourierPublished {
             .collect()
     }
 
-    fn aggregate(&self, answers: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> f64 {
+    fn aggregate(&self, estimates: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> f64 {
         match self.settings.aggregation {
-            Aggregation::Mean => answers.iter().map(index).sum::<f64>() / answers.len() as f64,
-            Aggregation::Median => quantile(&sorted(answers, index), 0.5),
+            Aggregation::Mean => estimates.iter().map(index).sum::<f64>() / estimates.len() as f64,
+            Aggregation::Median => quantile(&sorted(estimates, index), 0.5),
         }
     }
 
-    fn uncertainty(&self, answers: &[TripleEstimate]) -> Uncertainty {
+    fn uncertainty(&self, estimates: &[TripleEstimate]) -> Uncertainty {
         if self.settings.aggregation == Aggregation::Mean {
             let reason = "a mean over triples of one fitted curve: every estimate is a ratio without a finite variance, \
                           and all share the noise and the truncation of the curve";
             return Uncertainty::None { reason };
         }
-        let Some((low, high)) = median_ranks(answers.len()) else {
+        let Some((low, high)) = median_ranks(estimates.len()) else {
             return Uncertainty::None { reason: "a 95 % interval of a median needs at least 6 triples" };
         };
         let interval = |index: fn(&TripleEstimate) -> f64| {
-            let values = sorted(answers, index);
+            let values = sorted(estimates, index);
             [values[low], values[high]]
         };
         Uncertainty::Intervals {
@@ -192,19 +192,19 @@ impl Identifier for FourierPublished {
         }
         let settings = &self.settings;
         let drawn = triples::sample_triples(&instants, settings.selection, settings.triples, settings.seed)?;
-        let answers = &drawn.answers;
-        let (gain, time_constant) = (self.aggregate(answers, |a| a.K), self.aggregate(answers, |a| a.T));
-        let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(answers, |a| a.rudder_bias));
+        let estimates = &drawn.estimates;
+        let (gain, time_constant) = (self.aggregate(estimates, |a| a.K), self.aggregate(estimates, |a| a.T));
+        let response = FirstOrder::from_indices(gain, time_constant, self.aggregate(estimates, |a| a.rudder_bias));
         // The condition also refuses NaN.
         if !(response.K_over_T > 0.0 && response.K_over_T.is_finite() && response.inverse_T.is_finite()) {
             return Err(IdentifyError::NotAShip { inverse_T: response.inverse_T, K_over_T: response.K_over_T });
         }
         Ok(Estimate {
             response,
-            uncertainty: self.uncertainty(answers),
-            robust: None,
+            uncertainty: self.uncertainty(estimates),
+            robust_covariance: None,
             stop: fits.iter().map(|fit| fit.stop).max().unwrap_or(StopReason::Direct),
-            evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + drawn.tried,
+            evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + drawn.sampled,
             noise: None,
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),
@@ -216,13 +216,13 @@ impl Identifier for FourierPublished {
 fn diagnostics(fits: &[FittedSeries], instants: usize, drawn: &SampledTriples) -> Vec<(&'static str, f64)> {
     let mut all = fourier::diagnostics(fits);
     let spread = |index: fn(&TripleEstimate) -> f64| {
-        let values = sorted(&drawn.answers, index);
+        let values = sorted(&drawn.estimates, index);
         quantile(&values, 0.75) - quantile(&values, 0.25)
     };
     all.extend([
         ("instants", instants as f64),
-        ("triples_tried", drawn.tried as f64),
-        ("triples_accepted", drawn.answers.len() as f64),
+        ("triples_tried", drawn.sampled as f64),
+        ("triples_accepted", drawn.estimates.len() as f64),
         ("triples_singular", drawn.singular as f64),
         ("triples_ill_conditioned", drawn.ill_conditioned as f64),
         ("triples_negative_index", drawn.negative as f64),
@@ -235,7 +235,7 @@ fn diagnostics(fits: &[FittedSeries], instants: usize, drawn: &SampledTriples) -
 fn warnings(fits: &[FittedSeries], drawn: &SampledTriples) -> Vec<Warning> {
     let mut warnings = fourier::warnings(fits);
     if drawn.negative > 0 {
-        let kept = drawn.answers.len();
+        let kept = drawn.estimates.len();
         let text = format!("{} of {kept} triples give a negative K or T and are part of the estimate", drawn.negative);
         warnings.push(WarningCode::NegativeIndex.warning(text));
     }
@@ -251,8 +251,8 @@ fn range_about(signal: &Polyline, t: f64, reach: f64) -> f64 {
     ends.into_iter().fold(hi, f64::max) - ends.into_iter().fold(lo, f64::min)
 }
 
-fn sorted(answers: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> Vec<f64> {
-    let mut values: Vec<f64> = answers.iter().map(index).collect();
+fn sorted(estimates: &[TripleEstimate], index: impl Fn(&TripleEstimate) -> f64) -> Vec<f64> {
+    let mut values: Vec<f64> = estimates.iter().map(index).collect();
     values.sort_by(f64::total_cmp);
     values
 }

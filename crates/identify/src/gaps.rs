@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-/// Maximum interval that is not a gap, in mean intervals, without a setting.
+/// Maximum interval that is not a gap, in mean intervals, if no setting gives the maximum.
 const GAP_INTERVALS: f64 = 5.0;
 
 /// Maximum interval, s, that is not a gap: the setting, or five mean intervals of the record; infinite with fewer than

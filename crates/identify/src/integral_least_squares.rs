@@ -102,9 +102,10 @@ impl Identifier for IntegralLeastSquares {
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
         let covariance =
             |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
-        let robust = noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.finite_sample));
+        let robust_covariance =
+            noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.finite_sample));
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
-        let (uncertainty, warning) = match (noise.variance, &robust) {
+        let (uncertainty, warning) = match (noise.variance, &robust_covariance) {
             (Some(variance), Some(robust)) => {
                 reported_covariance(covariance(noise.influence * variance), robust, noise.lag1, equations)
             }
@@ -120,7 +121,7 @@ impl Identifier for IntegralLeastSquares {
         Ok(Estimate {
             response,
             uncertainty,
-            robust,
+            robust_covariance,
             stop: StopReason::Direct,
             evaluations: 1,
             noise: None,

@@ -49,9 +49,9 @@ const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LackOfFit {
     /// Root mean square of the residual of all records, rad.
-    pub residual: f64,
+    pub residual_rms: f64,
     /// Root mean square of the residual with nine fitted ship terms, rad, corrected for their number.
-    pub with_ship_terms: f64,
+    pub rms_with_ship_terms: f64,
     /// Standard deviation of the white noise of the heading, rad.
     pub noise_sd: f64,
     /// `true` if the correlation of neighbouring residuals is within the range of white noise.
@@ -60,7 +60,7 @@ pub struct LackOfFit {
     pub delay: f64,
     /// Root mean square of the residual with the term in δ', rad; `None` if the records do not identify a delay:
     /// fewer than two rudder reversals in each, or a delay above a quarter of T.
-    pub with_delay: Option<f64>,
+    pub rms_with_delay: Option<f64>,
 }
 
 impl LackOfFit {
@@ -104,8 +104,8 @@ impl LackOfFit {
         let (noise_sd, delay) = ((noise / rows).sqrt().min(after), -size / response.K_over_T);
         let is_reversed = trials.iter().any(|trial| count_reversals(trial.rudder()) >= MIN_REVERSALS);
         let is_identified = is_reversed && delay.abs() <= MAX_DELAY_RATIO * response.T().abs();
-        let with_delay = is_identified.then_some(delayed);
-        let lack = Self { residual: before, with_ship_terms: after, noise_sd, is_white, delay, with_delay };
+        let rms_with_delay = is_identified.then_some(delayed);
+        let lack = Self { residual_rms: before, rms_with_ship_terms: after, noise_sd, is_white, delay, rms_with_delay };
         (before.is_finite() && after.is_finite() && noise_sd.is_finite()).then_some(lack)
     }
 
@@ -113,16 +113,16 @@ impl LackOfFit {
     /// term, large for random moments. `None` for a residual that is white or not larger than the noise.
     pub fn unexplained_share(&self) -> Option<f64> {
         let beyond = |rms: f64| (rms * rms - self.noise_sd * self.noise_sd).max(0.0);
-        let all = beyond(self.residual);
-        (!self.is_white && all > 0.0).then(|| (beyond(self.with_ship_terms) / all).sqrt().min(1.0))
+        let all = beyond(self.residual_rms);
+        (!self.is_white && all > 0.0).then(|| (beyond(self.rms_with_ship_terms) / all).sqrt().min(1.0))
     }
 
     /// [`delay`](Self::delay), s, if its term gives most of the reduction by all terms. `None` for a white residual, or
     /// if the records do not identify a delay.
     pub fn rudder_delay(&self) -> Option<f64> {
-        let reduction = |rms: f64| self.residual * self.residual - rms * rms;
-        let with_delay = self.with_delay.filter(|_| !self.is_white)?;
-        (reduction(with_delay) > MIN_DELAY_SHARE * reduction(self.with_ship_terms)).then_some(self.delay)
+        let reduction = |rms: f64| self.residual_rms * self.residual_rms - rms * rms;
+        let rms_with_delay = self.rms_with_delay.filter(|_| !self.is_white)?;
+        (reduction(rms_with_delay) > MIN_DELAY_SHARE * reduction(self.rms_with_ship_terms)).then_some(self.delay)
     }
 }
 
@@ -247,7 +247,7 @@ mod tests {
             let case = Case { T: time_constant, K: 0.1 * time_constant.signum(), noise_deg: 0.1, ..Case::default() };
             let lack = LackOfFit::from_response(&[case.trial()], &case.ship()).expect("a zig-zag");
             assert!(lack.is_white && lack.unexplained_share().is_none(), "{lack:?}");
-            assert!((lack.residual / lack.noise_sd - 1.0).abs() < 0.2, "{lack:?}");
+            assert!((lack.residual_rms / lack.noise_sd - 1.0).abs() < 0.2, "{lack:?}");
         }
     }
 
@@ -275,6 +275,6 @@ mod tests {
         let case = Case { noise_deg: 0.01, ..Case::default() };
         let off = FirstOrder { K_over_T: 1.02 * case.ship().K_over_T, ..case.ship() };
         let lack = LackOfFit::from_response(&[case.trial()], &off).expect("a zig-zag");
-        assert!(lack.residual > 10.0 * lack.noise_sd && lack.with_ship_terms < 1.2 * lack.noise_sd, "{lack:?}");
+        assert!(lack.residual_rms > 10.0 * lack.noise_sd && lack.rms_with_ship_terms < 1.2 * lack.noise_sd, "{lack:?}");
     }
 }

@@ -161,7 +161,7 @@ impl Identifier for MotionRegression {
             }),
             None => Uncertainty::None { reason: "no more equations than unknowns" },
         };
-        let robust = solution.variance().map(|_| {
+        let robust_covariance = solution.variance().map(|_| {
             let finite_sample = acceleration.len() as f64 / solution.degrees_of_freedom;
             Covariance {
                 matrix: base(newey_west_three(&equations.scores([a, b, c])) * finite_sample),
@@ -189,7 +189,7 @@ impl Identifier for MotionRegression {
         Ok(Estimate {
             response: FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: c / b },
             uncertainty,
-            robust,
+            robust_covariance,
             stop: StopReason::Direct,
             evaluations: 1,
             noise: None,

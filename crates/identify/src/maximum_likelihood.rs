@@ -3,8 +3,9 @@
 //! The random yaw moment is absent, white, gusting (Ornstein–Uhlenbeck) or a random walk, the compass error white or of
 //! first order in time, and the recorded rudder may have a white error; the law is selected by BIC. Given 1/T and the
 //! noise the heading is linear in all other unknowns, so the search is over these few numbers alone, by Fisher scoring
-//! with exact slopes. It starts at the estimate of `output-error`, which is global in both signs of 1/T, and repeats
-//! the search over 1/T under the selected noise. With compass noise alone it equals `output-error`.
+//! (derivatives of the response are exact, those of the noise are finite differences). It starts at the estimate of
+//! `output-error`, which is global in both signs of 1/T, and repeats the search over 1/T under the selected noise. With
+//! compass noise alone it equals `output-error`.
 //!
 //! Spikes of the compass are left out, jumps of level are estimated, and both are listed.
 //!
@@ -42,6 +43,8 @@ pub fn spike_times(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
 
 impl Settings {
     /// Method with these settings, which are checked.
+    ///
+    /// Fails if the number of iterations is outside 1 to 1000.
     pub fn build(self) -> Result<MaximumLikelihood, SettingsError> {
         check_iterations("iterations", self.iterations)?;
         Ok(MaximumLikelihood { settings: self })

@@ -18,7 +18,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
 use crate::likelihood::track::Track;
-use crate::profile::{NewtonStep, Profile, invert};
+use crate::profile::{GaussNewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::checked_track;
 use crate::scan::{self, FitAtInverseT};
@@ -44,6 +44,8 @@ impl Default for Settings {
 
 impl Settings {
     /// Method with these settings, which are checked.
+    ///
+    /// Fails if points per decade or iterations are outside 1 to 1000, or the minimum |T| is outside 1e-6 to 1e6 s.
     pub fn build(self) -> Result<OutputError, SettingsError> {
         let per_decade = self.grid_per_decade;
         require((1..=MAX_POINTS_PER_DECADE).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
@@ -167,7 +169,7 @@ impl OutputError {
         let mut rss = profile.evaluate(inverse_T)?;
         for iterations in 1..=goal.iterations {
             let converged = PolishedMinimum { inverse_T, rss, stop: StopReason::Converged, iterations };
-            let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_T);
+            let GaussNewtonStep { by: mut step, decrease } = profile.gauss_newton_step(inverse_T);
             let hopeless = iterations > MIN_STEPS && rss - DECREASE_MARGIN * decrease > goal.bar;
             if step.abs() <= goal.tolerance * (inverse_T.abs() + resolution) || hopeless {
                 return Some(converged);
@@ -213,7 +215,8 @@ impl Identifier for OutputError {
 }
 
 impl OutputError {
-    /// Fits tracks with a usual sampling period of at least `finest`, s.
+    /// Estimate from tracks; `finest` is the minimum sampling period of their records, s, which sets the minimum |T| of
+    /// the scan unless a setting gives it. Fails as [`OutputError`] does.
     pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
         let grid = self.grid(&tracks, finest);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
@@ -324,7 +327,7 @@ impl RangeScan {
         Ok(Estimate {
             response,
             uncertainty,
-            robust: Some(robust_covariance),
+            robust_covariance: Some(robust_covariance),
             stop: if at_bound { StopReason::RangeLimit } else { stop },
             evaluations: self.grid.len() + evaluations,
             noise: None,

@@ -52,7 +52,7 @@ impl OutsideFit {
             return Err(IdentifyError::NotAShip { inverse_T, K_over_T });
         }
         if !rudder_bias.is_finite() {
-            return Err(IdentifyError::external_estimator("the rudder bias is not a finite number"));
+            return Err(IdentifyError::from_outside_message("the rudder bias is not a finite number"));
         }
         let (a, b) = (inverse_T, K_over_T);
         let jacobian = Matrix3::new(0.0, -a * a, 0.0, a, -a * b, 0.0, 0.0, 0.0, 1.0);
@@ -73,7 +73,7 @@ impl OutsideFit {
         Ok(Estimate {
             response,
             uncertainty,
-            robust: None,
+            robust_covariance: None,
             stop: StopReason::Outside,
             evaluations: 0,
             noise: None,

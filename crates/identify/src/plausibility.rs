@@ -17,8 +17,8 @@ const MAX_DEVIATIONS: f64 = 2.0;
 /// Relative tolerance of a rudder rate from a record.
 const RATE_TOLERANCE: f64 = 0.05;
 
-/// Maximum ratio between the largest speed of a record and its approach speed, either way: a current of two knots is a
-/// fifth of ten. A ship that gathers way has most of her speed at the first execute.
+/// Maximum ratio between the largest speed of a record and its approach speed, either way: a current of 2 kn changes a
+/// speed of 10 kn by a fifth, and a ship that gathers way has most of her speed at the first execute.
 const MAX_SPEED_RATIO: f64 = 1.25;
 
 /// Warning on unusual values of an estimate and of its records; `None` for usual values.

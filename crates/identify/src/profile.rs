@@ -34,15 +34,15 @@ pub(crate) struct Profile {
     parts: Vec<TrialColumns>,
     /// b (1/s²) and b δ_r (rad/s²).
     steering: Vector2<f64>,
-    /// Last evaluated 1/T (1/s) and the sum of squares there (rad²), `None` without a ship.
+    /// Last evaluated 1/T (1/s) and the sum of squares there (rad²), `None` as for [`evaluate`](Self::evaluate).
     last: Option<(f64, Option<f64>)>,
     /// Number of evaluations.
     pub evaluations: usize,
 }
 
-/// Step of 1/T.
+/// Step of 1/T by variable projection (Kaufman 1975).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct NewtonStep {
+pub(crate) struct GaussNewtonStep {
     /// Change of 1/T, 1/s.
     pub by: f64,
     /// Predicted decrease of the sum of squares, rad².
@@ -105,7 +105,7 @@ impl Profile {
     }
 
     /// Kaufman's step of 1/T from the last evaluated point.
-    pub fn newton_step(&mut self, inverse_T: f64) -> NewtonStep {
+    pub fn gauss_newton_step(&mut self, inverse_T: f64) -> GaussNewtonStep {
         let information = self.information(inverse_T);
         let score: f64 = self.parts.iter().map(|part| dot(&part.sensitivity, &part.residual)).sum();
         let products = Matrix2::new(information[(1, 1)], information[(1, 2)], information[(2, 1)], information[(2, 2)]);
@@ -113,7 +113,7 @@ impl Profile {
         let explained = solve2(&products, &cross).map_or(0.0, |share| share.dot(&cross));
         let curvature = information[(0, 0)] - explained;
         let by = if curvature > 0.0 { score / curvature } else { 0.0 };
-        NewtonStep { by, decrease: by * score }
+        GaussNewtonStep { by, decrease: by * score }
     }
 
     /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the last evaluated point; times 1/σ² it is the Fisher
@@ -127,8 +127,8 @@ impl Profile {
         information
     }
 
-    /// Residual times projected Jacobian, column by column and trial by trial; after
-    /// [`information`](Self::information).
+    /// Scores of (1/T, b, b δ_r), trial by trial: columns of the projected Jacobian times the residual, at the point of
+    /// the last call of [`information`](Self::information).
     pub fn into_scores(self) -> Vec<[Vec<f64>; 3]> {
         let trial_scores = |part: TrialColumns| {
             let mut columns = [part.sensitivity, part.columns.rudder, part.columns.constant];
@@ -201,7 +201,7 @@ impl TrialColumns {
         let [rudder, constant, heading] = self.removed;
         let (mean, length) = self.homogeneous;
         // φ₁ = mean + length · unit.
-        let along = heading.share - K_over_T * rudder.share - offset * constant.share;
+        let along = heading.component - K_over_T * rudder.component - offset * constant.component;
         let yaw_rate = if length > 0.0 { along / length } else { 0.0 };
         let level = heading.mean - K_over_T * rudder.mean - offset * constant.mean;
         Coefficients { anchor: State { heading: level - yaw_rate * mean, yaw_rate }, K_over_T, offset }

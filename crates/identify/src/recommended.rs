@@ -8,8 +8,9 @@
 //! such moment. If terms of a ship explain the residual, the model lacks a term. A random moment then substitutes for
 //! it, and K, T of maximum likelihood describe small and fast motions. An estimate of maximum likelihood without an
 //! interval of K is never recommended: its random moment explains the manoeuvre. Its replay error may exceed the error
-//! of output error, as for the true ship under strong random moments, by a factor of at most 30. The rule is not
-//! from the literature; METHODOLOGY documents its limits.
+//! of output error, as for the true ship under strong random moments, by a factor of at most 30. Without an estimate of
+//! output error, that of maximum likelihood is recommended. The rule is not from the literature; METHODOLOGY documents
+//! its limits.
 //!
 //! As a method it fits both models and returns the recommended estimate, so that a study can test the rule.
 
@@ -40,7 +41,7 @@ pub struct Recommendation {
     /// Reason for the recommendation.
     pub reason: VerdictReason,
     /// Lack of fit of output error; `None` without an estimate or without a noise level.
-    pub lack: Option<LackOfFit>,
+    pub lack_of_fit: Option<LackOfFit>,
     /// `true` if all records declare a calm, which excludes random moments.
     pub is_calm: bool,
 }
@@ -52,14 +53,15 @@ impl Recommendation {
         output_error: Option<&Estimate>,
         maximum_likelihood: Option<&Estimate>,
     ) -> Self {
-        let lack = output_error.and_then(|estimate| LackOfFit::from_response(trials, &estimate.response));
+        let lack_of_fit = output_error.and_then(|estimate| LackOfFit::from_response(trials, &estimate.response));
         let is_calm = trials.iter().all(Trial::is_calm);
-        let is_random = !is_calm && lack.and_then(|lack| lack.unexplained_share()).is_some_and(|x| x >= MIN_RANDOM);
+        let is_random =
+            !is_calm && lack_of_fit.and_then(|lack| lack.unexplained_share()).is_some_and(|x| x >= MIN_RANDOM);
         let has_moment = |fit: &Estimate| fit.noise.is_some_and(|noise| !noise.moment.is_none());
         let rms = |fit: &Estimate| pooled_response_rms(trials, &fit.response).unwrap_or(f64::INFINITY);
         let is_far = |fit: &Estimate| output_error.is_some_and(|nearest| rms(fit) > MAX_REPLAY_RATIO * rms(nearest));
         let has_jumps = |fit: &Estimate| fit.warnings.iter().any(|warning| warning.code == WarningCode::HeadingJump);
-        let has_noise = trials.iter().any(|trial| trial.noise().rudder.is_some_and(|sd| sd > 0.0));
+        let has_noise = trials.iter().any(|trial| trial.noise().rudder_sd.is_some_and(|sd| sd > 0.0));
         let reason = match maximum_likelihood.filter(|estimate| estimate.K().ci95.is_some()) {
             Some(_) if has_noise => VerdictReason::RudderNoise,
             Some(fit) if !has_moment(fit) && has_jumps(fit) => VerdictReason::HeadingJumps,
@@ -68,7 +70,7 @@ impl Recommendation {
             }
             _ => VerdictReason::NearestReplay,
         };
-        Self { reason, lack, is_calm }
+        Self { reason, lack_of_fit, is_calm }
     }
 
     /// Id of the recommended method.
@@ -82,8 +84,8 @@ impl Recommendation {
     }
 
     /// Kind of the residual of output error; `None` without a lack of fit.
-    pub fn residual(&self) -> Option<ResidualKind> {
-        let share = self.lack?.unexplained_share();
+    pub fn residual_kind(&self) -> Option<ResidualKind> {
+        let share = self.lack_of_fit?.unexplained_share();
         Some(share.map_or(ResidualKind::Noise, |share| {
             if share < MIN_RANDOM || self.is_calm { ResidualKind::LacksEffect } else { ResidualKind::Random }
         }))
@@ -138,7 +140,7 @@ mod tests {
     use document::{HeadingNoise, RandomMoment};
     use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
     use ship::FirstOrder;
-    use trial::{DeclaredConditions, DeclaredWeather, Noise};
+    use trial::{DeclaredConditions, DeclaredWeather, SensorNoise};
 
     fn nearest(trials: &[Trial]) -> Estimate {
         output_error::Settings::default().build().expect("defaults").identify(trials).expect("a fit")
@@ -178,7 +180,7 @@ mod tests {
         assert_eq!(reason(&base), VerdictReason::NearestReplay);
         assert_eq!(reason(&jumping), VerdictReason::HeadingJumps);
         assert_eq!(
-            Recommendation { reason: reason(&jumping), lack: None, is_calm: false }.method(),
+            Recommendation { reason: reason(&jumping), lack_of_fit: None, is_calm: false }.method(),
             "maximum-likelihood"
         );
         assert_eq!(reason(&in_gusts(&jumping)), VerdictReason::NearestReplay);
@@ -215,7 +217,7 @@ mod tests {
             let trials = [trial];
             let base = nearest(&trials);
             let outcome = Recommendation::from_estimates(&trials, Some(&base), Some(&in_gusts(&base)));
-            (outcome.reason, outcome.residual())
+            (outcome.reason, outcome.residual_kind())
         };
         assert_eq!(outcome(windy()), (VerdictReason::RandomMoment, Some(ResidualKind::Random)));
         assert_eq!(
@@ -226,7 +228,7 @@ mod tests {
 
     #[test]
     fn an_answer_without_intervals_is_not_taken() {
-        let noise = Noise { rudder: Some(0.01), ..Noise::default() };
+        let noise = SensorNoise { rudder_sd: Some(0.01), ..SensorNoise::default() };
         let trials = [Case { noise_deg: 0.1, ..Case::default() }.trial().with_noise(noise)];
         let base = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
         let reason = |other: &Estimate| Recommendation::from_estimates(&trials, Some(&base), Some(other)).reason;

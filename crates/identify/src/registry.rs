@@ -34,7 +34,7 @@ macro_rules! methods {
             }
         }
 
-        /// All methods that do not combine other methods, with default settings, in the order of reports.
+        /// Default settings of all methods that do not combine other methods, in the order of reports.
         pub fn default_settings() -> Vec<IdentifierSettings> {
             vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
         }

@@ -29,12 +29,12 @@ pub struct Replay {
 
 impl Replay {
     /// Heading (rad) and yaw rate (rad/s) at the first row.
-    pub fn initial(&self) -> [f64; 2] {
+    pub fn initial_state(&self) -> [f64; 2] {
         [self.heading[0], self.yaw_rate[0]]
     }
 
     /// Time (s) and residual (rad) of every row whose heading was measured.
-    pub fn observed(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub fn observed_residuals(&self) -> impl Iterator<Item = (f64, f64)> {
         self.time.iter().copied().zip(self.residual.iter().copied()).filter(|(_, residual)| residual.is_finite())
     }
 
@@ -63,10 +63,10 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     if free.iter().any(|value| !value.is_finite()) {
         return None;
     }
-    coefficients.anchor = best_start(&free, &columns.homogeneous);
+    coefficients.anchor = best_initial_state(&free, &columns.homogeneous);
     let states = track.simulate(a, &coefficients);
     let mut residual = vec![f64::NAN; states.len()];
-    for (&row, &measured) in track.observed.iter().zip(&track.heading) {
+    for (&row, &measured) in track.heading_rows.iter().zip(&track.heading) {
         residual[row] = measured - states[row].heading;
         if !residual[row].is_finite() {
             return None;
@@ -91,7 +91,7 @@ pub fn pooled_response_rms(trials: &[Trial], response: &FirstOrder) -> Option<f6
 /// Root mean square heading residual of several replays over all rows, rad; NaN without any.
 pub fn pooled_rms(replays: &[Replay]) -> f64 {
     let (mut square, mut rows) = (0.0, 0usize);
-    for (_, residual) in replays.iter().flat_map(Replay::observed) {
+    for (_, residual) in replays.iter().flat_map(Replay::observed_residuals) {
         square += residual * residual;
         rows += 1;
     }
@@ -100,7 +100,7 @@ pub fn pooled_rms(replays: &[Replay]) -> f64 {
 
 /// Heading (rad) and yaw rate (rad/s) at the anchor whose free motion, along 1 and φ₁, is nearest to `free`, the
 /// heading minus the response to rudder and bias.
-pub(crate) fn best_start(free: &[f64], homogeneous: &[f64]) -> State {
+pub(crate) fn best_initial_state(free: &[f64], homogeneous: &[f64]) -> State {
     let rows = free.len() as f64;
     let (level, mean) = (sum(free) / rows, sum(homogeneous) / rows);
     let square = dot(homogeneous, homogeneous);
@@ -128,7 +128,7 @@ mod tests {
         let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
         let trial = record("one", time, heading, rudder);
         let replayed = |K_over_T| replay(&trial, &FirstOrder { inverse_T: 0.1, K_over_T, rudder_bias: 0.0 });
-        assert!(replayed(0.01).is_some_and(|replay| replay.rms() > 0.0 && replay.observed().count() == 100));
+        assert!(replayed(0.01).is_some_and(|replay| replay.rms() > 0.0 && replay.observed_residuals().count() == 100));
         assert_eq!(replayed(1e170), None);
     }
 }

@@ -12,8 +12,8 @@ use crate::error::IdentifyError;
 /// Minimum range of rudder and heading, deg, that counts as steering.
 const MIN_RANGE_DEG: f64 = 0.5;
 
-/// Minimum and maximum duration of a record, s: from a tank model to thirty years. Methods use powers of the time up to
-/// the eighth and frequency numbers up to its ratio to the interval, which must stay in the range of floating point.
+/// Minimum and maximum duration of a record, s: a microsecond to thirty years, far beyond any trial. Methods use powers
+/// of the time up to the eighth, and the ratio of the duration to the sampling interval, which must not overflow.
 const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
 
 /// Maximum angle, rad: a heading that has turned 160 000 times.
@@ -56,7 +56,9 @@ impl Samples {
         for row in first + 1..trial.len() {
             let h = t[row] - t[row - 1];
             match corner {
-                Some(&Corner { row: before_row, time, before, after }) if before_row + 1 == row => {
+                Some(&Corner { row: before_row, time, rate_before: before, rate_after: after })
+                    if before_row + 1 == row =>
+                {
                     let (start, u, change) = (delta[row - 1], t[row] - time, after - before);
                     double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + u.powi(3) * change / 6.0;
                     integral += h * start + 0.5 * (h * h * before + u * u * change);

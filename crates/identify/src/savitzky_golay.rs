@@ -39,8 +39,8 @@ impl SavitzkyGolay {
     /// Central differences: three rows and a parabola.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
-    /// Fails if the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or exceeds
-    /// 10 001 rows.
+    /// Checks window and order: fails if the window is even, the order is outside 2..=5, the window does not hold
+    /// order + 1 rows, or exceeds 10 001 rows.
     pub fn check(&self) -> Result<(), SettingsError> {
         let Self { window_samples: rows, order } = *self;
         require((2..=MAX_ORDER).contains(&order), "order", order, "2, 3, 4 or 5")?;

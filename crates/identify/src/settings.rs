@@ -22,10 +22,10 @@ impl SettingsError {
     }
 }
 
-/// Maximum number of steps of an iteration: one that has not converged by then never does.
+/// Maximum number of steps of an iteration that a setting may ask for; no iteration converges later.
 pub(crate) const MAX_ITERATIONS: usize = 1000;
 
-/// Fails if the condition of a setting does not hold, with its value and the accepted values.
+/// Checks the setting `key`: fails, with its value and the accepted values, unless `is_valid`.
 pub(crate) fn require(
     is_valid: bool,
     key: &'static str,

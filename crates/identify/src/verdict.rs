@@ -2,7 +2,7 @@
 //!
 //! Rule: [`Recommendation`]. Entries of the estimates: [`method_entry`](crate::method_entry::method_entry).
 
-use document::fit::{Belief, VerdictEntry, VerdictReason};
+use document::fit::{KtUsability, VerdictEntry, VerdictReason};
 use document::method::MethodEntry;
 use ship::FirstOrder;
 use ship::angle::to_deg;
@@ -20,7 +20,7 @@ const MAX_ERROR_RATIO: f64 = 10.0;
 /// and models explain 0.97 and more, also for strongly nonlinear ships and in gusts.
 const MIN_EXPLAINED_SHARE: f64 = 0.9;
 
-/// Ids of the methods against which every other estimate is checked for a contradiction.
+/// Ids of the methods whose estimates are compared with the accepted estimate, and may contradict it.
 pub const REFERENCE_METHODS: [&str; 2] = ["output-error", "maximum-likelihood"];
 
 /// Verdict over the estimates of several methods from the same records; `None` if no method gives an estimate.
@@ -33,7 +33,7 @@ pub fn from_estimates(trials: &[Trial], answers: &[(MethodEntry, Option<Estimate
     let mut verdict = taken(&Recommendation::from_estimates(trials, nearest, likely), entries, straight)?;
     verdict.because = disbelief(&verdict, entries, straight);
     if verdict.because.is_some() {
-        verdict.believe = Belief::No;
+        verdict.believe = KtUsability::No;
         (verdict.k_per_s, verdict.t_s) = (None, None);
     }
     Some(verdict)
@@ -98,21 +98,21 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
     let reason = taken.map_or(VerdictReason::NearestReplay, |_| recommendation.reason);
     let taken = taken.unwrap_or(nearest);
     let is_far = |entry: &&MethodEntry| rms(entry) > MAX_ERROR_RATIO * rms(&nearest) && entry.method != taken.method;
-    let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack.as_ref().map(|lack| to_deg(size(lack)));
+    let degrees = |size: fn(&LackOfFit) -> f64| recommendation.lack_of_fit.as_ref().map(|lack| to_deg(size(lack)));
     let contradicts =
         |entry: &&MethodEntry| REFERENCE_METHODS.contains(&entry.id()) && (are_apart(taken, entry) || is_far(entry));
     Some(VerdictEntry {
-        believe: Belief::Yes,
+        believe: KtUsability::Yes,
         because: None,
         method: taken.method.clone(),
         k_per_s: taken.parameters.map(|parameters| parameters.k_per_s),
         t_s: taken.parameters.map(|parameters| parameters.t_s),
         reason,
-        residual: recommendation.residual(),
-        residual_deg: degrees(|lack| lack.residual),
-        with_ship_terms_deg: degrees(|lack| lack.with_ship_terms),
+        residual: recommendation.residual_kind(),
+        residual_deg: degrees(|lack| lack.residual_rms),
+        with_ship_terms_deg: degrees(|lack| lack.rms_with_ship_terms),
         noise_deg: degrees(|lack| lack.noise_sd),
-        rudder_delay_s: recommendation.lack.and_then(|lack| lack.rudder_delay()),
+        rudder_delay_s: recommendation.lack_of_fit.and_then(|lack| lack.rudder_delay()),
         set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
         straight_lines_deg,
         contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
@@ -153,7 +153,7 @@ mod tests {
             let t = Quantity { ci95, ..Quantity::without_uncertainty(t) };
             [entry("output-error", Some([Quantity::without_uncertainty(k), t])), entry("maximum-likelihood", None)]
         };
-        let nearest = Recommendation { reason: VerdictReason::NearestReplay, lack: None, is_calm: false };
+        let nearest = Recommendation { reason: VerdictReason::NearestReplay, lack_of_fit: None, is_calm: false };
         let reason = |entries: &[MethodEntry], scatter: f64| {
             let verdict = taken(&nearest, entries, Some(scatter)).expect("an answer");
             disbelief(&verdict, entries, Some(scatter)).unwrap_or_default()
@@ -187,7 +187,7 @@ mod tests {
             heading_rmse_deg: Some(rms),
             ..MethodEntry::default()
         };
-        let taken = Recommendation { reason: VerdictReason::NearestReplay, lack: None, is_calm: false };
+        let taken = Recommendation { reason: VerdictReason::NearestReplay, lack_of_fit: None, is_calm: false };
         let outcome = |rms: f64, straight: f64| {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();

@@ -22,7 +22,7 @@ impl Identifier for Differences {
         let mut sums = [0.0; 5];
         for trial in trials {
             let (time, heading, rudder) = (trial.time(), trial.heading(), trial.rudder());
-            // A step of 5 s keeps the change of heading above its noise.
+            // A step of 5 s or more keeps the change of heading above its noise.
             let step = (5.0 / trial.sampling_period()).ceil() as usize;
             for row in step..trial.len().saturating_sub(step) {
                 let (before, after) = (row - step, row + step);
@@ -46,7 +46,7 @@ impl Identifier for Differences {
         Ok(Estimate {
             response: FirstOrder::from_indices(slope / inverse_time, 1.0 / inverse_time, 0.0),
             uncertainty: Uncertainty::None { reason: "differences have correlated errors" },
-            robust: None,
+            robust_covariance: None,
             stop: StopReason::Direct,
             evaluations: 1,
             noise: None,
@@ -62,8 +62,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (design, rows) = in_memory(&study);
     let summary = summarise(&rows, &design);
     println!("{:28} median size of the error of T [%]", "method");
-    for (method, record) in design.methods.iter().zip(&summary.overall) {
-        let size = record.t.median_size.map_or("no answer".to_owned(), |size| format!("{:.3}", size.value));
+    for (method, performance) in design.methods.iter().zip(&summary.overall) {
+        let size =
+            performance.t.median_absolute_error.map_or("no answer".to_owned(), |size| format!("{:.3}", size.value));
         println!("{:28} {size}", method.label);
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Simulates a 10/10 zig-zag of a known ship and prints the errors of every method.
+//! Simulates a 10/10 zig-zag of a ship with given K and T, and prints the errors of K and T of every method.
 
 use std::error::Error;
 

@@ -50,7 +50,7 @@ pub mod prelude {
     pub use campaign::scenario::Scenario;
     pub use campaign::summary::summarise;
     pub use campaign::{NoObserver, Observer};
-    pub use document::fit::{Belief, VerdictEntry};
+    pub use document::fit::{KtUsability, VerdictEntry};
     pub use document::{Warning, WarningSource, Warnings};
     pub use identify::method_entry::method_entry;
     pub use identify::{

@@ -27,7 +27,7 @@ fn a_csv_is_fitted() {
     assert!(text.lines().any(|line| line.starts_with("take K = ") && line.contains("T = 16.")), "{text}");
 }
 
-/// The same record twice, one after the other with a straight leg between.
+/// The log holds the same zig-zag twice, with straight legs before, between and after.
 #[test]
 fn a_log_with_two_zig_zags_is_refused() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/records/first-order.csv");

@@ -147,7 +147,8 @@ struct PairedManoeuvre {
 /// each and the reading of T. Two mixtures of the same files share their draws, so that F/B is 1. A zig-zag is steered
 /// as in the record, with the recorded rudder rate and initial yaw rate; a turn has the recorded rudder, held longer
 /// for a slower ship. Characteristics at the end of a turn are read at the end of the record. Characteristics that the
-/// record does not show are left out; a record that is neither a zig-zag nor a turn has none.
+/// record does not show are left out; a record that is neither a zig-zag nor a turn has none. The lists of model files
+/// are left empty.
 ///
 /// Fails if less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
 pub fn correct(
@@ -157,9 +158,9 @@ pub fn correct(
     loading: &str,
     draws: usize,
 ) -> Result<Correction, PredictError> {
-    let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().independent_of(ballast) };
+    let full = &if full.ships() == ballast.ships() { full.clone() } else { full.clone().independent_of(ballast) };
     let mut warnings = Vec::new();
-    let speed = |mixture: &ShipMixture| mixture.first().speed_m_s;
+    let speed = |mixture: &ShipMixture| mixture.first_ship().speed_m_s;
     if let (Some(of_full), Some(of_trial)) = (speed(full), speed(ballast))
         && (of_full / of_trial - 1.0).abs() > SPEED_TOLERANCE
     {
@@ -202,7 +203,7 @@ fn zig_zag(
     zigzag: &Measured,
     draws: usize,
 ) -> Option<PairedManoeuvre> {
-    let steered = SteeredZigZag::from_measured(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
+    let steered = SteeredZigZag::from_measured(zigzag, ballast.first_ship().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown =
@@ -210,7 +211,7 @@ fn zig_zag(
     Some(PairedManoeuvre { rudder: steered.kind.max_rudder(), full, trial, shown })
 }
 
-/// Turn of a record, simulated with both models; `None` for a record without a turn or without an initial motion.
+/// Turn of a record, simulated with both models; `None` for a record without a turn or an initial motion, or too short.
 fn turned(
     full: &ShipMixture,
     ballast: &ShipMixture,
@@ -400,7 +401,7 @@ mod tests {
         assert_eq!(correction.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
-    /// A ship at full load turns for longer than the record: the rudder is held on for her.
+    /// A ship at full load turns for longer than the record: her rudder is held longer.
     #[test]
     fn a_turn_is_corrected_too() {
         let [mut full, ballast] = ships();

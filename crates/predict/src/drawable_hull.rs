@@ -4,7 +4,7 @@ use document::{IdentifiedHull, IdentifiedShipError};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::StandardNormal;
-use ship::vessel::prime::{HullCoefficient, HullForm};
+use ship::vessel::prime::{HullCoefficient, HullModel};
 use ship::vessel::prior::Particular;
 use ship::vessel::scaled::ScaledHull;
 
@@ -19,7 +19,7 @@ const MAX_TRIES: usize = 100;
 #[derive(Debug, Clone)]
 pub(crate) struct HullSampler {
     pub stored: IdentifiedHull,
-    form: HullForm,
+    form: HullModel,
     coefficients: Vec<HullCoefficient>,
     /// Square root of the covariance; at another loading, of the covariance that is independent of the trials.
     root: DMatrix<f64>,
@@ -100,7 +100,8 @@ impl HullSampler {
     /// Draw of the coefficients about a mean, within their ranges; the stored values after [`MAX_TRIES`] rejections.
     fn values(&self, rng: &mut impl rand::Rng, mean: &DVector<f64>) -> DVector<f64> {
         let is_within = |values: &DVector<f64>| {
-            self.coefficients.iter().zip(values).all(|(prior, value)| (prior.ends[0]..=prior.ends[1]).contains(value))
+            let mut pairs = self.coefficients.iter().zip(values);
+            pairs.all(|(prior, value)| (prior.bounds[0]..=prior.bounds[1]).contains(value))
         };
         let mut tries = (0..MAX_TRIES)
             .map(|_| mean + &self.root * DVector::from_fn(mean.len(), |_, _| rng.sample::<f64, _>(StandardNormal)));
@@ -149,7 +150,7 @@ mod tests {
         assert!(spiral.figures["rate_starboard_deg_s"].interval.median > 0.0);
     }
 
-    /// A number gives one sample, whatever else is sampled; without uncertainty it is the most probable ship.
+    /// A draw depends on its number alone, not on other draws.
     #[test]
     fn one_number_is_one_draw() {
         let mixture = testing::mixture(ship());

@@ -12,7 +12,7 @@ pub enum PredictError {
     /// The covariance of the parameters is not positive definite.
     #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
     Covariance,
-    /// No model is given.
+    /// No model is given, or the first model has no timescale: L/U is unknown and K/T is not positive.
     #[error("there is no model to predict from")]
     Empty,
     /// The model needs a channel that is not predicted.

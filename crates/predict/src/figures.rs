@@ -81,7 +81,9 @@ pub(crate) fn initial_turning(
 
 /// Characteristics of the track of a turn with the execute at `execute` s; empty for a model without speed and drift.
 pub(crate) fn circle_characteristics(passage: &SimulatedManoeuvre, execute: f64) -> Characteristics {
-    let Some(PlanarMotion { length, velocity, track }) = &passage.way else { return Characteristics::default() };
+    let Some(PlanarMotion { length, velocity, track }) = &passage.planar_motion else {
+        return Characteristics::default();
+    };
     let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
     let measures = turning_circle([&time, &passage.heading, &passage.yaw_rate], [track, velocity], execute);
     let lengths = |metres: Option<f64>| metres.map(|metres| metres / length);
@@ -98,7 +100,7 @@ pub(crate) fn circle_characteristics(passage: &SimulatedManoeuvre, execute: f64)
     ])
 }
 
-/// `true` if an interval is possible for a characteristic: sizes of a turning circle are above zero.
+/// `true` if an interval is possible for a characteristic: the 5 % quantile of a size of a turning circle is positive.
 pub(crate) fn is_possible(name: &str, interval: &PredictionInterval) -> bool {
     let is_size = ["advance", "transfer", "tactical_diameter"].iter().any(|size| name.starts_with(size));
     !is_size || interval.ci90[0] > 0.0

@@ -18,7 +18,7 @@ use simulate::{Manoeuvre, Side};
 use trial::imo::CriterionUnit;
 use trial::{DeclaredConditions, Loading};
 
-use crate::imo::{IMO_LIMITS, Limit};
+use crate::imo::{IMO_LIMITS, ImoLimit};
 use crate::interval::PredictionInterval;
 use crate::prediction::Prediction;
 use crate::replay::record_file;
@@ -28,7 +28,7 @@ use record::TestedManoeuvre;
 /// Limit on the track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
 pub const MAX_TRACK_REACH_LENGTHS: f64 = 15.0;
 
-/// Section of the stopping trial.
+/// Section of the form for the stopping trial.
 pub const STOPPING_SECTION: &str = "stopping";
 
 /// Maximum number of decimals of a result: no trial resolves a hundredth of a degree or of a ship length.
@@ -45,7 +45,7 @@ pub struct ImoForm {
 
 /// Manoeuvres of the form, to both sides.
 ///
-/// Initial turning: 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
+/// The initial turning is read from the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
 pub fn manoeuvres() -> Vec<Manoeuvre> {
     standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().with_first_side(Side::Port), kind]).collect()
 }
@@ -173,7 +173,7 @@ pub fn fill<'a>(
 
 /// Value and source of a characteristic that a record shows: a record at full load or with a correction is preferred to
 /// a record at partial load. `None` if no record shows it.
-fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
+fn measured(limit: &ImoLimit, side: &str, tested: &[TestedManoeuvre]) -> Option<ImoFormEntry> {
     let show = |tested: &TestedManoeuvre| {
         let (record, quantity) = (tested.record, tested.figure(limit.figure)?);
         let file = record_file(record.trial);
@@ -207,7 +207,7 @@ fn measured(limit: &Limit, side: &str, tested: &[TestedManoeuvre]) -> Option<Imo
 
 /// Value and source of a predicted characteristic.
 fn predicted(
-    limit: &Limit,
+    limit: &ImoLimit,
     side: &str,
     predictions: &[Prediction],
     particulars: Option<Particulars>,

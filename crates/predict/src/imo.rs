@@ -44,7 +44,7 @@ pub(crate) const CIRCLE_RUDDER: f64 = 35.0 * DEGREE;
 pub(crate) const CIRCLE_RUDDER_TOLERANCE: f64 = 0.05 * CIRCLE_RUDDER;
 
 /// Limit of IMO resolution MSC.137(76) on a characteristic.
-pub(crate) struct Limit {
+pub(crate) struct ImoLimit {
     /// Name of the limit.
     pub name: &'static str,
     /// Section of the form.
@@ -61,7 +61,7 @@ pub(crate) struct Limit {
     pub value: fn(Option<Particulars>) -> Option<f64>,
 }
 
-const IN_CIRCLE: Limit = Limit {
+const ADVANCE_LIMIT: ImoLimit = ImoLimit {
     name: "advance",
     section: "turning circle, rudder 35°",
     field: "advance",
@@ -71,7 +71,7 @@ const IN_CIRCLE: Limit = Limit {
     value: |_| Some(imo::MAX_ADVANCE_LENGTHS),
 };
 
-const IN_TEN: Limit = Limit {
+const FIRST_OVERSHOOT_10_10_LIMIT: ImoLimit = ImoLimit {
     name: "10/10 first overshoot",
     section: "zig-zag 10°/10°",
     field: "1st overshoot angle",
@@ -82,42 +82,42 @@ const IN_TEN: Limit = Limit {
 };
 
 /// Limits of the resolution. Source: MSC.137(76), 5.3.
-pub(crate) const IMO_LIMITS: [Limit; 6] = [
-    Limit {
+pub(crate) const IMO_LIMITS: [ImoLimit; 6] = [
+    ImoLimit {
         name: "initial turning",
         section: "initial turning",
         field: "distance to turn 10° with 10° rudder",
         figure: "initial_turning_lengths",
         unit: CriterionUnit::ShipLengths,
         value: |_| Some(imo::MAX_INITIAL_TURNING_LENGTHS),
-        ..IN_TEN
+        ..FIRST_OVERSHOOT_10_10_LIMIT
     },
-    IN_TEN,
-    Limit {
+    FIRST_OVERSHOOT_10_10_LIMIT,
+    ImoLimit {
         name: "10/10 second overshoot",
         field: "2nd overshoot angle",
         figure: "second_overshoot_deg",
         value: |scale| scale.map(imo::second_overshoot_10_10_limit_deg),
-        ..IN_TEN
+        ..FIRST_OVERSHOOT_10_10_LIMIT
     },
-    Limit {
+    ImoLimit {
         name: "20/20 first overshoot",
         section: "zig-zag 20°/20°",
         manoeuvre: ZIG_ZAG_20_20,
         value: |_| Some(imo::MAX_FIRST_OVERSHOOT_20_20_DEG),
-        ..IN_TEN
+        ..FIRST_OVERSHOOT_10_10_LIMIT
     },
-    IN_CIRCLE,
-    Limit {
+    ADVANCE_LIMIT,
+    ImoLimit {
         name: "tactical diameter",
         field: "tactical diameter",
         figure: "tactical_diameter_lengths",
         value: |_| Some(imo::MAX_TACTICAL_DIAMETER_LENGTHS),
-        ..IN_CIRCLE
+        ..ADVANCE_LIMIT
     },
 ];
 
-impl Limit {
+impl ImoLimit {
     /// `true` if a manoeuvre to either side gives the limited characteristic: for the 10/10 also an initial turning
     /// with 10°.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
@@ -139,13 +139,14 @@ impl Limit {
 pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, f64)> {
     let scale = Particulars { length: length_over_speed, speed: 1.0 };
     let is_limited =
-        |limit: &&Limit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
+        |limit: &&ImoLimit| figure.strip_prefix(limit.manoeuvre).is_some_and(|name| name.trim() == limit.figure);
     IMO_LIMITS.iter().find(is_limited).and_then(|limit| Some((limit.name, (limit.value)(Some(scale))?)))
 }
 
-/// IMO criteria with the predicted values, for a ship of this length and speed.
+/// IMO criteria with the predicted values, for a ship of this length and speed; a criterion without a prediction is
+/// left out.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
-    let answer = |prediction: &Prediction, limit: &Limit| {
+    let answer = |prediction: &Prediction, limit: &ImoLimit| {
         let figure = prediction.figures.get(limit.figure)?;
         let largest = (limit.value)(Some(particulars))?;
         Some(PredictedCriterion {

@@ -23,7 +23,7 @@ pub struct PredictionInterval {
 ///
 /// # Panics
 /// Without a value.
-pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
+pub(crate) fn quantiles(values: &mut [f64]) -> [f64; 5] {
     values.sort_unstable_by(f64::total_cmp);
     [0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(values, share))
 }
@@ -31,7 +31,7 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
 impl PredictionInterval {
     /// Median and intervals of samples, which are sorted in place; `None` without samples.
     pub fn from_samples(values: &mut [f64]) -> Option<Self> {
-        let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
+        let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| quantiles(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use crate::interval::band;
+use crate::interval::quantiles;
 
 /// Change of heading from one point to the next, rad; 90° and 180° are points.
 const STEP: f64 = PI / 60.0;
@@ -32,13 +32,14 @@ impl TurnTrack<'_> {
     }
 }
 
-/// Median track of turns to one side (±1), as far as half of them go and at most as far as a track is shown; empty
-/// without a turn.
+/// Median track (north, east; unit of the tracks) of turns to one side (±1), up to the change of heading that half of
+/// them reach, and at most [`MAX_TRACK_RAD`]; empty without a turn.
 pub(crate) fn median_track(turns: &[TurnTrack], side: f64) -> Vec<[f64; 2]> {
     let place = |point: usize| {
         let places: Vec<[f64; 2]> = turns.iter().filter_map(|turn| turn.at(side, point as f64 * STEP)).collect();
         let is_enough = !places.is_empty() && 2 * places.len() >= turns.len();
-        is_enough.then(|| [0, 1].map(|axis| band(&mut places.iter().map(|place| place[axis]).collect::<Vec<f64>>())[2]))
+        is_enough
+            .then(|| [0, 1].map(|axis| quantiles(&mut places.iter().map(|place| place[axis]).collect::<Vec<f64>>())[2]))
     };
     (0..=(MAX_TRACK_RAD / STEP).round() as usize).map_while(place).collect()
 }

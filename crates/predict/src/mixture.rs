@@ -75,7 +75,8 @@ pub(crate) struct StructureSampler {
 #[derive(Debug, Clone)]
 pub struct ShipMixture {
     parts: Vec<StructureSampler>,
-    files: Vec<IdentifiedShip>,
+    /// Ships, one of every file.
+    ships: Vec<IdentifiedShip>,
     /// Probabilities of the files.
     shares: Vec<f64>,
     timescale: f64,
@@ -102,7 +103,7 @@ pub struct DrawnShip {
     pub disturbances: Disturbances,
     /// Initial yaw rate, rad/s: of the approach, plus the error of a hull.
     pub yaw_rate: f64,
-    /// Stream of the random moment.
+    /// Key of the random numbers of the yaw moment.
     pub key: StreamKey,
 }
 
@@ -130,8 +131,8 @@ impl ShipMixture {
             }
         }
         let timescale = files.first().and_then(|(stored, _)| stored.timescale()).ok_or(PredictError::Empty)?;
-        let files = files.into_iter().map(|(stored, _)| stored).collect();
-        Ok(Self { parts, files, shares, timescale, is_independent: false, shares_trial_errors: false, wind: None })
+        let ships = files.into_iter().map(|(stored, _)| stored).collect();
+        Ok(Self { parts, ships, shares, timescale, is_independent: false, shares_trial_errors: false, wind: None })
     }
 
     /// The same ships, drawn with random numbers independent of `other`. If each ship has one hull, converted from
@@ -143,23 +144,23 @@ impl ShipMixture {
                 _ => false,
             };
         let shares_trial_errors =
-            self.files.len() == other.files.len() && self.files.iter().zip(&other.files).all(shares_trial_errors);
+            self.ships.len() == other.ships.len() && self.ships.iter().zip(&other.ships).all(shares_trial_errors);
         Self { is_independent: true, shares_trial_errors, ..self }
     }
 
-    /// Timescale of the ship, s: about L/U.
+    /// Timescale of the ship of the first file, s: about L/U.
     pub fn timescale(&self) -> f64 {
         self.timescale
     }
 
     /// Ship of the first file.
-    pub fn first(&self) -> &IdentifiedShip {
-        &self.files[0]
+    pub fn first_ship(&self) -> &IdentifiedShip {
+        &self.ships[0]
     }
 
-    /// Files of the mixture.
-    pub fn files(&self) -> &[IdentifiedShip] {
-        &self.files
+    /// Ships of the mixture, one of every file.
+    pub fn ships(&self) -> &[IdentifiedShip] {
+        &self.ships
     }
 
     /// Most probable ship of the most probable file, without disturbances.
@@ -172,7 +173,7 @@ impl ShipMixture {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.drawn_structure(number) } else { self.likeliest() };
-        let stored = &self.files[part.file];
+        let stored = &self.ships[part.file];
         let mut rng = key.rng(RngPurpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
             true => part.sample(&mut rng),
@@ -233,12 +234,12 @@ impl ShipMixture {
     /// Most probable structure of the most probable file, the first of equals; several hulls do not lower the rank of a
     /// file.
     fn likeliest(&self) -> &StructureSampler {
-        let file = (0..self.files.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
+        let file = (0..self.ships.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
         likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
     }
 
     /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
-    /// for any number of draws. An independent mixture uses √2, which is incommensurable with it.
+    /// for any number of draws. A mixture that is independent in all errors uses the incommensurable step √2 − 1.
     pub(crate) fn drawn_structure(&self, number: u64) -> &StructureSampler {
         let step =
             if self.is_independent && !self.shares_trial_errors { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN_STEP };
@@ -262,7 +263,7 @@ fn likeliest<'a>(parts: impl DoubleEndedIterator<Item = &'a StructureSampler>) -
     parts.rev().max_by(|a, b| a.weight.total_cmp(&b.weight))
 }
 
-/// Weight, checked; `stored` is the value in the file.
+/// Weight, if it is finite and not negative; otherwise the error with the value `stored` in the file.
 fn checked(weight: f64, stored: f64) -> Result<f64, PredictError> {
     let is_weight = weight.is_finite() && weight >= 0.0;
     if is_weight { Ok(weight) } else { Err(IdentifiedShipError::Value { key: "weight", value: stored }.into()) }
@@ -335,7 +336,7 @@ mod tests {
     #[test]
     fn draws_have_the_stored_law() {
         let mixture = testing::mixture(testing::identified_ship());
-        let stored = &mixture.first().members[0];
+        let stored = &mixture.first_ship().members[0];
         let count = 4000;
         let draws: Vec<Vec<f64>> = (0..count)
             .map(|k| mixture.draw_ship(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
@@ -399,7 +400,7 @@ mod tests {
         assert_eq!(of(stored.in_calm().expect("known"), &UncertaintySource::ALL), 0.0);
     }
 
-    /// A rudder that was logged late gives a negative dead time; no ship has one.
+    /// A rudder that was logged late gives a negative dead time; drawn ships have none.
     #[test]
     fn a_rudder_logged_late_is_told_and_steered_on_time() {
         let mut stored = testing::identified_ship();
@@ -425,7 +426,7 @@ mod tests {
         let [one, again, other] = [7, 7, 8].map(|k| mixture.draw_ship(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
-        assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);
+        assert_eq!(mixture.most_probable().response.parameters(), mixture.first_ship().members[0].parameters);
     }
 
     /// A term in the measured sway needs a record with sway.

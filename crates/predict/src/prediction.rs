@@ -13,7 +13,7 @@ use trial::manoeuvre::{deserialize_text, serialize_text};
 
 use crate::error::PredictError;
 use crate::figures::{self, Characteristics};
-use crate::interval::{PredictionInterval, band};
+use crate::interval::{PredictionInterval, quantiles};
 use crate::median_track::{TurnTrack, median_track};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::simulated_manoeuvre::{SimulatedManoeuvre, row_interval};
@@ -84,7 +84,8 @@ pub struct Prediction {
     /// Figures of merit by name; the unit is in the name.
     pub figures: IndexMap<String, PredictedFigure>,
     /// Number of drawn ships that did not complete the manoeuvre.
-    pub lost: usize,
+    #[serde(rename = "lost")]
+    pub incomplete_draws: usize,
     /// Sizes of a turning circle whose interval reaches below zero: the records do not determine them.
     #[serde(skip)]
     pub undetermined: Vec<(String, PredictionInterval)>,
@@ -153,7 +154,7 @@ pub(crate) fn check_completed(manoeuvre: impl ToString, made: usize, draws: usiz
 impl ShipMixture {
     /// Length and speed; `None` if the first file has none.
     pub fn particulars(&self) -> Option<Particulars> {
-        self.first().particulars()
+        self.first_ship().particulars()
     }
 
     /// Predicts a manoeuvre from `draws` drawn ships; `shares` adds the share of every source of uncertainty.
@@ -182,7 +183,7 @@ impl ShipMixture {
         let (values, made): (Vec<Option<Characteristics>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
         let made: Vec<DrawnSeries> = made.into_iter().flatten().collect();
         check_completed(kind, made.len(), draws)?;
-        let lost = draws - made.len();
+        let incomplete_draws = draws - made.len();
         let extrapolated = self.is_extrapolated(kind.max_rudder(), made.iter().map(|series| series.largest_rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
@@ -202,7 +203,7 @@ impl ShipMixture {
             undetermined.extend((!sound).then(|| (name.clone(), figure.interval)));
             sound
         });
-        Ok(Prediction { kind: kind.clone(), figures, lost, undetermined, curves })
+        Ok(Prediction { kind: kind.clone(), figures, incomplete_draws, undetermined, curves })
     }
 
     /// Prediction of the steady turns of a spiral, without disturbances.
@@ -220,14 +221,14 @@ impl ShipMixture {
             predicted(&values, self.is_extrapolated(kind.max_rudder(), std::iter::once(largest)), sources, alone);
         let steady = std::iter::once(most_probable).chain(all).collect();
         let curves = ManoeuvreCurves { steady, ..ManoeuvreCurves::default() };
-        Prediction { kind: kind.clone(), figures, lost: 0, undetermined: Vec::new(), curves }
+        Prediction { kind: kind.clone(), figures, incomplete_draws: 0, undetermined: Vec::new(), curves }
     }
 
     /// `true` if a rudder (rad) or the median of the maximum yaw rates (rad/s) is beyond the range of the records.
     pub(crate) fn is_extrapolated(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
         let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let end = |value: fn(&ValidityRange) -> f64| {
-            self.files().iter().map(|ship| value(&ship.validity_range)).fold(0.0, f64::max)
+            self.ships().iter().map(|ship| value(&ship.validity_range)).fold(0.0, f64::max)
         };
         rudder > RANGE_FACTOR * end(|seen| seen.rudder_rad) || rate > RANGE_FACTOR * end(|seen| seen.yaw_rate_rad_s)
     }
@@ -266,7 +267,7 @@ fn predicted(
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
 
-/// Quantiles row by row, up to the last row that nine tenths of the drawn ships reach.
+/// Quantiles of the headings row by row, up to the last row that nine tenths of the drawn ships reach.
 fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> BandedCurve {
     let mut bands = BandedCurve::default();
     let mut values = Vec::with_capacity(draws.len());
@@ -277,7 +278,7 @@ fn bands(draws: &[&[f64]], most_probable: Option<&SimulatedManoeuvre>, period: f
             break;
         }
         bands.time.push(row as f64 * period);
-        bands.quantiles.push(band(&mut values));
+        bands.quantiles.push(quantiles(&mut values));
         let heading = most_probable.and_then(|passage| passage.heading.get(row));
         bands.most_probable.push(heading.copied().unwrap_or(f64::NAN));
     }
@@ -314,7 +315,7 @@ mod tests {
             assert_eq!(figure.interval.ci90[0], figure.interval.ci90[1], "{name}");
             assert!(figure.shares.is_empty() && figure.defined == 1.0);
         }
-        assert!(!prediction.is_extrapolated() && prediction.lost == 0);
+        assert!(!prediction.is_extrapolated() && prediction.incomplete_draws == 0);
         assert!(prediction.curves.heading.time.len() > 100);
     }
 

@@ -15,7 +15,7 @@ use trial::{Quantity, RecordOrigin, Trial, ZigZag as Measured};
 use crate::error::PredictError;
 use crate::figures::{self, Characteristics};
 use crate::helm_replay::{self, SteeredZigZag};
-use crate::interval::{PredictionInterval, band};
+use crate::interval::{PredictionInterval, quantiles};
 use crate::line::StraightLine;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::prediction::{BandedCurve, check_completed, parallel_draws, too_few_error};
@@ -142,7 +142,7 @@ impl ShipMixture {
         };
         let of_draw = |number| {
             let (passage, mut rng) = sail(number, &UncertaintySource::ALL)?;
-            let noise = self.first().noise.heading_sd_rad;
+            let noise = self.first_ship().noise.heading_sd_rad;
             let mut headings = at_rows(&passage);
             headings.iter_mut().for_each(|heading| *heading += noise * rng.sample::<f64, _>(StandardNormal));
             Some((passage, headings))
@@ -152,8 +152,9 @@ impl ShipMixture {
         check_completed(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-        let quantiles = (0..rows.len()).map(|row| band(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>()));
-        let heading = BandedCurve { quantiles: quantiles.collect(), most_probable: at_rows(&most_probable), time };
+        let of_row = |row: usize| quantiles(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>());
+        let bands = (0..rows.len()).map(of_row).collect();
+        let heading = BandedCurve { quantiles: bands, most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let largest_rates = made.iter().map(SimulatedManoeuvre::max_yaw_rate);
@@ -180,7 +181,7 @@ impl ShipMixture {
     fn in_wind_of(&self, trial: &Trial) -> Self {
         let approach = trial.observed_rows().next().map(|row| trial.heading()[row]);
         let mut ships = self.clone();
-        ships.wind = approach.zip(trial.mean_wind()).map(|(heading, [speed, from])| Wind {
+        ships.wind = approach.zip(trial.mean_true_wind()).map(|(heading, [speed, from])| Wind {
             moment: 0.0,
             from: from - heading,
             speed: Some(speed),
@@ -191,7 +192,7 @@ impl ShipMixture {
 
     /// Overshoots, times and period of a measured zig-zag, compared with its simulation.
     fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
-        let Some(steered) = SteeredZigZag::from_measured(measured, self.first().approach_yaw_rate_rad_s) else {
+        let Some(steered) = SteeredZigZag::from_measured(measured, self.first_ship().approach_yaw_rate_rad_s) else {
             return Ok(ByName::new());
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
@@ -204,14 +205,14 @@ impl ShipMixture {
     /// distance of the initial turning is V times the time if the record has no distance.
     pub(crate) fn measured_characteristic(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
         let particulars = self.particulars();
-        let has_way = !self.first().hulls.is_empty();
+        let has_way = !self.first_ship().hulls.is_empty();
         let stand_in = trial.particulars().or(particulars).filter(|_| !has_way);
         helm_replay::measured_characteristic(trial, measured, name, particulars.map(|ship| ship.length), stand_in)
     }
 
-    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, from this ship: a straight line
-    /// through the differences between the first readings and the replay from zero heading and yaw rate. `None` if the
-    /// record has too few headings at its beginning.
+    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations: ordinate and slope of a straight
+    /// line through the differences between the first readings and the replay of the most probable ship from zero
+    /// heading and yaw rate. `None` if the record has too few headings at its beginning; fails if that replay does.
     pub(crate) fn initial_motion(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let manoeuvre = Manoeuvre::replay(simplified(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::simulate(&self.most_probable(), &manoeuvre, self.timescale());
@@ -260,7 +261,7 @@ fn turns(
     timescale: f64,
     current: Option<Current>,
 ) -> (ByName, Option<TurnTracks>) {
-    let length = made.first().and_then(|first| Some(first.way.as_ref()?.length));
+    let length = made.first().and_then(|first| Some(first.planar_motion.as_ref()?.length));
     let turn = HeldTurn::from_trial(trial).zip(turn::resampled_record(trial, timescale, length));
     let Some((turn, record)) = turn.filter(|_| trial.duration() > timescale) else { return (ByName::new(), None) };
     let measured = turn.characteristics_within_record(&record);

@@ -28,7 +28,7 @@ const MAX_WAIT_TIMESCALES: f64 = 500.0;
 /// Motion of a ship; time in s from the first execute, angles in rad.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedManoeuvre {
-    /// Time between the rows of a simulated manoeuvre, s.
+    /// Time between rows, s.
     pub period: f64,
     /// Heading, 0 at the first execute.
     pub heading: Vec<f64>,
@@ -40,7 +40,8 @@ pub struct SimulatedManoeuvre {
     #[serde(skip)]
     pub executes: Vec<HelmOrder>,
     /// Velocity and track; `None` for a model without speed and drift.
-    pub way: Option<PlanarMotion>,
+    #[serde(rename = "way")]
+    pub planar_motion: Option<PlanarMotion>,
 }
 
 /// Speed, drift and track of a manoeuvre.
@@ -88,7 +89,7 @@ fn simulated_ship(ship: &DrawnShip) -> SimulatedShip {
 impl SimulatedManoeuvre {
     /// North and east, m; `None` for a model without drift.
     pub fn track(&self) -> Option<&[[f64; 2]]> {
-        self.way.as_ref().map(|way| way.track.as_slice()).filter(|track| !track.is_empty())
+        self.planar_motion.as_ref().map(|planar| planar.track.as_slice()).filter(|track| !track.is_empty())
     }
 
     /// Value of a series on the rows at a time, s, linear between rows.
@@ -101,7 +102,7 @@ impl SimulatedManoeuvre {
 
     /// Distance through the water until `time` s, m; `None` for a model without speed.
     pub fn distance_sailed(&self, time: f64) -> Option<f64> {
-        let velocity = &self.way.as_ref()?.velocity;
+        let velocity = &self.planar_motion.as_ref()?.velocity;
         let speed = |row: usize| velocity[row][0].hypot(velocity[row][1]);
         let rows = ((time / self.period) as usize).min(velocity.len().checked_sub(1)?);
         let whole: f64 = (0..rows).map(|row| 0.5 * self.period * (speed(row) + speed(row + 1))).sum();
@@ -121,7 +122,8 @@ impl SimulatedManoeuvre {
         simulation.disturbances = ship.disturbances;
         // As fine as the rows, because a ship does not respond to faster changes.
         let correlation = ship.disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
-        simulation.weather_grid = row_interval(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
+        simulation.weather_cell_width =
+            row_interval(timescale).min(MAX_CORRELATION_SHARE * correlation).min(MAX_CELL_S);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
             None => (!ship.response.model().effects().is_empty()).then(|| ship.response.min_time_constant()),
@@ -143,7 +145,7 @@ impl SimulatedManoeuvre {
 
     /// First row in which the ship exceeds the speed `fastest`, m/s; `None` if it never does.
     fn runs_away(&self, fastest: f64) -> Option<usize> {
-        self.way.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
+        self.planar_motion.as_ref()?.velocity.iter().position(|[surge, sway]| surge.hypot(*sway) > fastest)
     }
 
     /// Motion of any simulated ship; sampling period and maximum wait follow from `timescale`, the timescale of the
@@ -156,15 +158,15 @@ impl SimulatedManoeuvre {
         let SimulatedTrial { trial, truth } = simulation.run(key)?;
         let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
         let length = simulation.ship.particulars().map(|particulars| particulars.length);
-        let way = length.and_then(|length| PlanarMotion::from_trial(length, &trial, &heading));
-        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
+        let planar_motion = length.and_then(|length| PlanarMotion::from_trial(length, &trial, &heading));
+        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, planar_motion })
     }
 
     /// Rotates the motion to another course: headings increase by `angle` (rad).
     pub fn rotate_course(&mut self, angle: f64) {
         self.heading.iter_mut().for_each(|heading| *heading += angle);
         let (sin, cos) = angle.sin_cos();
-        for place in self.way.iter_mut().flat_map(|way| &mut way.track) {
+        for place in self.planar_motion.iter_mut().flat_map(|planar| &mut planar.track) {
             let [north, east] = *place;
             *place = [north * cos - east * sin, north * sin + east * cos];
         }
@@ -175,9 +177,9 @@ impl SimulatedManoeuvre {
         let rows = (time / self.period).floor() as usize + 1;
         let mut cut = self.clone();
         [&mut cut.heading, &mut cut.yaw_rate, &mut cut.rudder].into_iter().for_each(|column| column.truncate(rows));
-        if let Some(way) = &mut cut.way {
-            way.velocity.truncate(rows);
-            way.track.truncate(rows);
+        if let Some(planar) = &mut cut.planar_motion {
+            planar.velocity.truncate(rows);
+            planar.track.truncate(rows);
         }
         cut
     }

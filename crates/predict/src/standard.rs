@@ -23,8 +23,8 @@ pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
     vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
 }
 
-/// Requested manoeuvre with the end of a prediction, scaled by the timescale (s) of a ship; `None` for a spiral, which
-/// is predicted as a steady curve.
+/// Requested manoeuvre with the end that a prediction has: a number of executes, a change of heading, or a multiple of
+/// the timescale (s) of the ship; `None` for a spiral, which is predicted as a steady curve.
 pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {

@@ -6,7 +6,7 @@ use document::{
 };
 use nalgebra::DMatrix;
 use ship::angle::from_deg;
-use ship::vessel::prime::HullForm;
+use ship::vessel::prime::HullModel;
 use ship::vessel::prior::HullParticulars;
 use simulate::{Manoeuvre, SimulatedShip, Simulation, StreamKey};
 use trial::Trial;
@@ -54,7 +54,7 @@ pub(crate) fn identified_ship() -> IdentifiedShip {
 pub(crate) fn hull(form: &str) -> IdentifiedHull {
     let (length_m, speed_m_s) = (75.0, 6.0);
     let particulars = HullParticulars { length: length_m, speed: speed_m_s, ..HullParticulars::default() };
-    let forms = HullForm::candidates(Some(&particulars)).into_iter();
+    let forms = HullModel::candidates(Some(&particulars)).into_iter();
     let priors = forms.filter(|candidate| candidate.as_str() == form).flat_map(|form| form.coefficients().to_vec());
     let coefficients: Vec<IdentifiedCoefficient> = priors
         .map(|prior| IdentifiedCoefficient {

@@ -45,13 +45,13 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
     }
 }
 
-/// Motion of a drawn ship with a random error of the removed current, from the first row on.
+/// Motion of a drawn ship whose track drifts from the first row on, by a random error of the removed current.
 pub(crate) fn with_current_error(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed_rng(RngPurpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
     let period = passage.period;
-    for (row, place) in passage.way.iter_mut().flat_map(|way| &mut way.track).enumerate() {
+    for (row, place) in passage.planar_motion.iter_mut().flat_map(|planar| &mut planar.track).enumerate() {
         *place = [0, 1].map(|axis| place[axis] + error[axis] * row as f64 * period);
     }
     passage
@@ -84,7 +84,7 @@ impl HeldTurn {
         let share = |row: usize| away(values[row]) * side / largest.abs();
         let mut first = (0..values.len()).find(|&row| share(row) > MIN_HELD)?;
         let until = (first..values.len()).find(|&row| share(row) < MIN_HELD).map_or(values.len() - 1, |row| row - 1);
-        // Back along the ramp.
+        // Back to the first row of the ramp.
         while first > 0 && share(first - 1) > 0.01 {
             first -= 1;
         }
@@ -133,7 +133,7 @@ impl HeldTurn {
     /// lengths, up to a heading change of one and a half circles. `None` without a track, or if the run ends before the
     /// execute.
     fn track(&self, passage: &SimulatedManoeuvre) -> Option<Vec<[f64; 2]>> {
-        let (track, length) = (passage.track()?, passage.way.as_ref()?.length);
+        let (track, length) = (passage.track()?, passage.planar_motion.as_ref()?.length);
         let first = self.first_row(passage);
         let (begin, heading) = (*track.get(first)?, *passage.heading.get(first)?);
         let (sin, cos) = heading.sin_cos();
@@ -233,7 +233,7 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
     let heading = on_rows(&mut trial.observed_rows(), trial.heading())?;
     let channel = |channel: Channel| on_rows(&mut (0..trial.len()), trial.channel(channel)?);
     let pairs = |x: Vec<f64>, y: Vec<f64>| x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-    let way = || {
+    let planar_motion = || {
         let (length, track) = (length?, pairs(channel(Channel::North)?, channel(Channel::East)?));
         let [surge, sway] =
             [Channel::Surge, Channel::Sway].map(|axis| channel(axis).unwrap_or_else(|| vec![f64::NAN; count]));
@@ -244,7 +244,13 @@ pub(crate) fn resampled_record(trial: &Trial, timescale: f64, length: Option<f64
         _ => (heading[row + 1] - heading[row]) / period,
     };
     let yaw_rate = (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect();
-    Some(SimulatedManoeuvre { period, yaw_rate, way: way(), heading, ..SimulatedManoeuvre::default() })
+    Some(SimulatedManoeuvre {
+        period,
+        yaw_rate,
+        planar_motion: planar_motion(),
+        heading,
+        ..SimulatedManoeuvre::default()
+    })
 }
 
 #[cfg(test)]

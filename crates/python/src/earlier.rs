@@ -24,7 +24,7 @@ impl<'py> FromPyObject<'_, 'py> for NamedModel {
 }
 
 /// Models of earlier trials, read from files or texts. Fails if a file or text is not a model.
-pub fn earlier(models: &[NamedModel]) -> Result<Vec<EarlierModel>, Failure> {
+pub fn earlier_models(models: &[NamedModel]) -> Result<Vec<EarlierModel>, Failure> {
     let read = |NamedModel { name, text }: &NamedModel| match text {
         Some(text) => EarlierModel::from_document(name, text).map(|model| vec![model]),
         None => EarlierModel::from_files(&[PathBuf::from(name)]),

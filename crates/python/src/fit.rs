@@ -11,11 +11,11 @@ use study::records::repetition_warnings;
 use study::work;
 use trial::Trial;
 
-use crate::curve::{ReplayArrays, curve};
-use crate::earlier::{NamedModel, earlier};
+use crate::curve::{ReplayArrays, replay_arrays};
+use crate::earlier::{NamedModel, earlier_models};
 use crate::python_method::{PyIdentifier, PythonMethods};
-use crate::record::{PyRecord, read_warnings, sentences, trials};
-use crate::wait::patiently;
+use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::wait::run_in_background;
 
 /// Result of a fit, with the records and estimates for its figures.
 #[pyclass(frozen, name = "Fit", module = "kempf._kempf")]
@@ -36,19 +36,19 @@ pub struct PyFit {
 impl PyFit {
     /// Record number `place`, from 0, as fitted, at the scale of the first record; `None` beyond the last record.
     fn record(&self, place: usize) -> Option<PyRecord> {
-        self.trials.get(place).cloned().map(PyRecord::plain)
+        self.trials.get(place).cloned().map(PyRecord::from_trial)
     }
 
     /// Replay of a record by the estimate of a method; `None` without this record or this method, if the method gives
     /// no estimate, or if the replay is not finite.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
-        Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
+        Some(replay_arrays(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
     }
 }
 
-/// Fit of records by the named methods, or by the default methods, and by functions of the caller; `priors` are models
-/// of earlier trials.
+/// Fit of records by the named methods (if empty, the default methods) and by functions of the caller; `validate` are
+/// validation records, `priors` models of earlier trials.
 #[pyfunction]
 pub fn fit(
     py: Python<'_>,
@@ -62,8 +62,8 @@ pub fn fit(
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, validation) = (trials(&records), trials(&validate));
-    patiently(py, move || {
-        let priors = earlier(&priors)?;
+    run_in_background(py, move || {
+        let priors = earlier_models(&priors)?;
         let mut methods = work::fit::labelled_methods(&methods, seed)?;
         for (label, function) in functions {
             name::check_label(&label).map_err(|unfit| Failure::input(format!("own: a label is {label:?}; {unfit}")))?;
@@ -77,9 +77,9 @@ pub fn fit(
         let mut warnings = Warnings::default();
         warnings.extend(reading.iter().cloned().chain(repetition_warnings(&records, &validation)));
         let done = work::fit::fit([&records, &validation], &methods, &priors, true, warnings)?.with_predicted_circle();
-        let warnings = sentences(done.document.verdict_warnings().filter(|warning| !reading.contains(warning)));
+        let warnings = warning_texts(done.document.verdict_warnings().filter(|warning| !reading.contains(warning)));
         Ok(PyFit {
-            text: documents::text(&done.document).map_err(Failure::execution)?,
+            text: documents::to_json(&done.document).map_err(Failure::execution)?,
             warnings,
             trials: [done.records.trials, done.records.held_out].concat(),
             answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),

@@ -9,13 +9,13 @@ use study::documents;
 use study::options::PredictRequest;
 use study::work::predict::{self as work, PredictInput, StoredModel};
 
-use crate::earlier::{NamedModel, earlier};
+use crate::earlier::{NamedModel, earlier_models};
 use crate::options::parse_request;
-use crate::record::{PyRecord, read_warnings, sentences, trials};
-use crate::wait::patiently;
+use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::wait::run_in_background;
 
-/// Document of a prediction, and warnings. `models` are file names, or names with a text; `options` are options of the
-/// command line, `priors` are models of earlier trials.
+/// JSON document of a prediction, and warnings. `models` are file names, or names with a text; `replay` are records to
+/// compare with their prediction, `options` are options of the command line, `priors` are models of earlier trials.
 #[pyfunction]
 pub fn predict(
     py: Python<'_>,
@@ -27,7 +27,7 @@ pub fn predict(
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&replay).collect();
     let records = trials(&replay);
-    patiently(py, move || {
+    run_in_background(py, move || {
         let names = models.iter().map(|model| model.name.clone());
         let mut asked: PredictRequest =
             parse_request(options.into_iter().chain([String::from("--")]).chain(names).collect())?;
@@ -39,11 +39,11 @@ pub fn predict(
         };
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
         warnings.extend(reading.iter().cloned());
-        let earlier = earlier(&priors)?;
+        let earlier = earlier_models(&priors)?;
         let input =
             PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
-        let warnings = sentences(predicted.warnings.iter().filter(|warning| !reading.contains(warning)));
-        Ok((documents::text(&predicted).map_err(Failure::execution)?, warnings))
+        let warnings = warning_texts(predicted.warnings.iter().filter(|warning| !reading.contains(warning)));
+        Ok((documents::to_json(&predicted).map_err(Failure::execution)?, warnings))
     })
 }

@@ -9,11 +9,11 @@ use trial::Trial;
 
 use crate::record::PyRecord;
 
-/// Labelled Python functions. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and optionally their
-/// covariance, row by row.
+/// Labelled Python functions. Each takes a list of records and returns K (1/s), T (s), δ_r (rad) and their covariance,
+/// row by row, or `None`.
 pub type PythonMethods = Vec<(String, Py<PyAny>)>;
 
-/// Return value of a function: K, T, δ_r and their covariance.
+/// Return value of a function: K (1/s), T (s), δ_r (rad) and their covariance; `None` if that is unknown.
 type Returned = (f64, f64, f64, Option<[[f64; 3]; 3]>);
 
 /// Python function that returns K, T and δ_r.
@@ -30,11 +30,11 @@ impl Identifier for PyIdentifier {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let ask = |py: Python<'_>| -> PyResult<Returned> {
-            let records: Vec<PyRecord> = trials.iter().cloned().map(PyRecord::plain).collect();
+            let records: Vec<PyRecord> = trials.iter().cloned().map(PyRecord::from_trial).collect();
             self.0.bind(py).call1((records,))?.extract()
         };
         let (K, T, rudder_bias, covariance) =
-            Python::attach(|py| ask(py).map_err(|raised| IdentifyError::external_estimator(&raised.to_string())))?;
+            Python::attach(|py| ask(py).map_err(|raised| IdentifyError::from_outside_message(&raised.to_string())))?;
         let errors = covariance
             .map_or(OutsideErrors::Unknown, |rows| OutsideErrors::Covariance(Matrix3::from_row_slice(&rows.concat())));
         OutsideFit { K, T, rudder_bias, errors }.estimate()

@@ -8,15 +8,15 @@ use document::{Warning, Warnings};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use study::options::ReadingOptions;
-use study::records::{expand, file_and_hash, read_all, trial_from_log, warning_source};
+use study::records::{file_and_hash, read_records, record_files, trial_from_log, warning_source};
 use trial::channel::TIME_COLUMN;
 use trial::{Channel, Log, Sidecar, Trial};
 
 use crate::options::parse_request;
 use crate::raise::raised;
-use crate::wait::patiently;
+use crate::wait::run_in_background;
 
-/// Record as used by the methods.
+/// Record of one trial, with the warnings of its reading.
 #[pyclass(frozen, name = "Record", module = "kempf._kempf")]
 pub struct PyRecord {
     /// Trial of the record.
@@ -26,7 +26,7 @@ pub struct PyRecord {
 
 impl PyRecord {
     /// Record of a trial, without warnings.
-    pub fn plain(trial: Trial) -> Self {
+    pub fn from_trial(trial: Trial) -> Self {
         Self { trial, warnings: Vec::new() }
     }
 }
@@ -37,7 +37,7 @@ pub fn read_warnings(records: &[Py<PyRecord>]) -> impl Iterator<Item = Warning> 
 }
 
 /// Texts of warnings.
-pub fn sentences<'a>(warnings: impl IntoIterator<Item = &'a Warning>) -> Vec<String> {
+pub fn warning_texts<'a>(warnings: impl IntoIterator<Item = &'a Warning>) -> Vec<String> {
     warnings.into_iter().map(Warning::to_string).collect()
 }
 
@@ -54,7 +54,7 @@ impl PyRecord {
 
     #[getter]
     fn warnings(&self) -> Vec<String> {
-        sentences(&self.warnings)
+        warning_texts(&self.warnings)
     }
 
     #[getter]
@@ -124,14 +124,14 @@ impl PyRecord {
 /// Records of a file or of a folder; `options` are options of the command line.
 #[pyfunction]
 pub fn read(py: Python<'_>, path: PathBuf, options: Vec<String>) -> PyResult<Vec<PyRecord>> {
-    patiently(py, move || {
+    run_in_background(py, move || {
         let options: ReadingOptions = parse_request(options)?;
         let record = |file: PathBuf| {
             let mut warnings = Warnings::default();
-            let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
+            let mut trials = read_records(std::slice::from_ref(&file), &options, &mut warnings)?;
             Ok(PyRecord { trial: trials.remove(0), warnings: warnings.ranked() })
         };
-        expand(std::slice::from_ref(&path))?.into_iter().map(record).collect()
+        record_files(std::slice::from_ref(&path))?.into_iter().map(record).collect()
     })
 }
 
@@ -153,7 +153,7 @@ pub fn record_of(
     options: Vec<String>,
 ) -> PyResult<PyRecord> {
     let table = table(&columns).map_err(raised)?;
-    patiently(py, move || record_from_table(&name, &table, &parse_request(options)?, None))
+    run_in_background(py, move || record_from_table(&name, &table, &parse_request(options)?, None))
 }
 
 /// Record `name` from the text of a table and of its sidecar.

@@ -17,24 +17,24 @@ use study::views::publish;
 
 use crate::raise::raised;
 use crate::scene::ScenarioInput;
-use crate::wait::Underway;
+use crate::wait::BackgroundWork;
 
 /// Observer of background work: progress, messages and requests to stop.
 #[derive(Default)]
-pub struct Watch {
+pub struct WorkObserver {
     /// `true` after a request to stop.
     is_asked: AtomicBool,
-    /// Maximum number of steps.
+    /// Maximum number of trials.
     most: AtomicU64,
-    /// Number of finished steps.
+    /// Number of finished trials.
     done: AtomicU64,
     /// Notes and warnings.
     messages: Mutex<[Vec<String>; 2]>,
-    /// Threads of the work; `None` for the global pool.
+    /// Thread pool for the trials; `None` for the global pool.
     threads: Option<ThreadPool>,
 }
 
-impl Watch {
+impl WorkObserver {
     /// Notes and warnings since the last call.
     pub fn take_messages(&self) -> [Vec<String>; 2] {
         std::mem::take(&mut *self.messages())
@@ -45,7 +45,7 @@ impl Watch {
     }
 }
 
-impl Observer for Watch {
+impl Observer for WorkObserver {
     fn begin(&self, most: u64, done: u64) {
         self.most.store(most, Ordering::Relaxed);
         self.done.store(done, Ordering::Relaxed);
@@ -81,27 +81,27 @@ fn pool(count: i64) -> Result<ThreadPool, Failure> {
     pool.map_err(|error| Failure::execution(format!("failed to start {count} threads: {error}")))
 }
 
-/// Document of a study, after its missing trials were run and the study was published.
+/// JSON document of a study, after its missing trials were run and the study was published.
 fn study(
     scene: &ScenarioInput,
     out: Option<PathBuf>,
     seed: Option<u64>,
     restart: bool,
-    watch: &Watch,
+    observer: &WorkObserver,
 ) -> Result<String, Failure> {
     let scenario = scene.read(seed)?;
     let theme = FigureOptions { paper: None, dpi: 600.0, style: None }.theme()?;
     let folder = ResultFolder::make(&out.unwrap_or_else(|| default_folder(&scenario.name)))?;
-    let stored = collect(&scenario, &folder, restart, watch)?;
+    let stored = collect(&scenario, &folder, restart, observer)?;
     let publish = || publish::write_files(&stored, &folder, &theme, FigureChoice::Named);
-    let summary = match &watch.threads {
+    let summary = match &observer.threads {
         Some(threads) => threads.install(publish),
         None => publish(),
     }?;
     publish::document(&stored, &summary, &folder)
 }
 
-/// Document, notes and warnings of a scenario that is run into the folder `out`; `None` for the default folder.
+/// JSON document, notes and warnings of a study whose results are in the folder `out`; `None` for the default folder.
 /// `progress` is called with the number of finished trials and the maximum number of trials.
 #[pyfunction]
 #[pyo3(signature = (scene, out, threads, seed, restart, progress))]
@@ -115,46 +115,51 @@ pub fn run(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Vec<String>, Vec<String>)> {
     let threads = threads.map(pool).transpose().map_err(raised)?;
-    let watch = Arc::new(Watch { threads, ..Watch::default() });
-    let observer = Arc::clone(&watch);
-    let text = watched(py, &watch, progress.as_ref(), move || study(&scene, out, seed, restart, &observer))?;
-    let [notes, warnings] = watch.take_messages();
+    let observer = Arc::new(WorkObserver { threads, ..WorkObserver::default() });
+    let shared = Arc::clone(&observer);
+    let text = run_observed(py, &observer, progress.as_ref(), move || study(&scene, out, seed, restart, &shared))?;
+    let [notes, warnings] = observer.take_messages();
     Ok((text, notes, warnings))
 }
 
-/// Result of observed work, after waiting; `progress` is called with the number of finished steps and the maximum
-/// number of steps.
-pub fn watched<T: Send + 'static>(
+/// Result of observed work, after its end; `progress` is called with the number of finished trials and the maximum
+/// number of trials.
+pub fn run_observed<T: Send + 'static>(
     py: Python<'_>,
-    watch: &Watch,
+    observer: &WorkObserver,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
-    let mut underway = Underway::start(work)?;
+    let mut background_work = BackgroundWork::start(work)?;
     let mut last = None;
     loop {
-        let done = underway.wait(py);
-        let now = (watch.done.load(Ordering::Relaxed), watch.most.load(Ordering::Relaxed));
+        let done = background_work.wait(py);
+        let now = (observer.done.load(Ordering::Relaxed), observer.most.load(Ordering::Relaxed));
         if let Some(progress) = progress.filter(|_| now.1 > 0 && last.replace(now) != Some(now))
             && let Err(raised) = progress.call1(py, now)
         {
-            return Err(stopped(py, watch, underway, raised));
+            return Err(stopped(py, observer, background_work, raised));
         }
         if let Some(done) = done {
             return done;
         }
         if let Err(raised) = py.check_signals() {
-            return Err(stopped(py, watch, underway, raised));
+            return Err(stopped(py, observer, background_work, raised));
         }
     }
 }
 
 /// Requests a stop and waits until the rows are stored, or for a second signal. The message of the interruption states
 /// what was stored.
-fn stopped<T: Send + 'static>(py: Python<'_>, watch: &Watch, mut underway: Underway<T>, raised: PyErr) -> PyErr {
-    watch.is_asked.store(true, Ordering::Relaxed);
+fn stopped<T: Send + 'static>(
+    py: Python<'_>,
+    observer: &WorkObserver,
+    mut background_work: BackgroundWork<T>,
+    raised: PyErr,
+) -> PyErr {
+    observer.is_asked.store(true, Ordering::Relaxed);
     loop {
-        if let Some(done) = underway.wait(py) {
+        if let Some(done) = background_work.wait(py) {
             let kept = done.err().filter(|_| raised.is_instance_of::<PyKeyboardInterrupt>(py));
             return kept.map_or(raised, |kept| PyKeyboardInterrupt::new_err(kept.value(py).to_string()));
         }

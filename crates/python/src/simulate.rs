@@ -5,12 +5,12 @@ use campaign::outside_estimates::record_name;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use study::options::{Replicates, SimulateRequest};
-use study::work::simulate::{RecordFiles, simulate_record_files, tasks};
+use study::work::simulate::{RecordFiles, requested_trials, simulate_record_files};
 
 use crate::options::parse_request;
 use crate::record::{PyRecord, record_from_table};
 use crate::scene::ScenarioInput;
-use crate::wait::patiently;
+use crate::wait::run_in_background;
 
 /// Selected trials, each with its truth as JSON; `None` for `cell` or `replicate` selects all. Records pass through the
 /// file format, as on the command line.
@@ -22,7 +22,7 @@ pub fn simulate(
     replicate: Option<u64>,
     seed: Option<u64>,
 ) -> PyResult<Vec<(PyRecord, String)>> {
-    patiently(py, move || {
+    run_in_background(py, move || {
         let scenario = scene.read(seed)?;
         let replicate = replicate.map_or(Replicates::All, Replicates::One);
         let asked = SimulateRequest { scenario: scene.path().to_owned(), cell, replicate };
@@ -30,7 +30,7 @@ pub fn simulate(
         let read = |RecordFiles { name, table, sidecar, truth }: RecordFiles| {
             Ok((record_from_table(&name, &table, &whole, sidecar.as_deref())?, truth))
         };
-        let trials = tasks(&scenario, &asked)?.into_par_iter().map(|task| {
+        let trials = requested_trials(&scenario, &asked)?.into_par_iter().map(|task| {
             simulate_record_files(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect()
         });
         // Collected in two steps, so that the failure is the first one in the order of the trials.

@@ -8,11 +8,11 @@ use study::options::TraceRequest;
 use study::records::repetition_warnings;
 use study::work;
 
-use crate::curve::{ReplayArrays, curve};
-use crate::earlier::{NamedModel, earlier};
+use crate::curve::{ReplayArrays, replay_arrays};
+use crate::earlier::{NamedModel, earlier_models};
 use crate::options::parse_request;
-use crate::record::{PyRecord, read_warnings, sentences, trials};
-use crate::wait::patiently;
+use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::wait::run_in_background;
 
 /// Result of a trace, with the records and replays for its figures.
 #[pyclass(frozen, name = "Trace", module = "kempf._kempf")]
@@ -31,16 +31,17 @@ pub struct PyTrace {
 impl PyTrace {
     /// Record number `place`, from 0, as fitted, at the scale of the first record; `None` beyond the last record.
     fn record(&self, place: usize) -> Option<PyRecord> {
-        self.records.get(place).map(|record| PyRecord::plain(record.trial.clone()))
+        self.records.get(place).map(|record| PyRecord::from_trial(record.trial.clone()))
     }
 
     /// Replays of a record by the base, and by the average of the structures; `None` without this record.
     fn replays<'py>(&self, py: Python<'py>, place: usize) -> Option<[ReplayArrays<'py>; 2]> {
-        Some(self.records.get(place)?.replays.each_ref().map(|replay| curve(py, replay)))
+        Some(self.records.get(place)?.replays.each_ref().map(|replay| replay_arrays(py, replay)))
     }
 }
 
-/// Trace of records; `options` are options of the command line, `priors` are models of earlier trials.
+/// Trace of records; `validate` are validation records, `options` are options of the command line, `priors` are models
+/// of earlier trials.
 #[pyfunction]
 pub fn trace(
     py: Python<'_>,
@@ -52,7 +53,7 @@ pub fn trace(
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
     let (records, validation) = (trials(&records), trials(&validate));
-    patiently(py, move || {
+    run_in_background(py, move || {
         // The command line requires the name of a record; the records themselves are passed separately.
         let asked: TraceRequest = parse_request([options, vec![String::from("record")]].concat())?;
         let [records, validation] = [records, validation].map(|trials| work::trace::withhold_channels(&asked, trials));
@@ -61,13 +62,13 @@ pub fn trace(
         let traced = work::trace::trace(
             [&records, &validation],
             &work::trace::settings(&asked)?,
-            &earlier(&priors)?,
+            &earlier_models(&priors)?,
             true,
             &mut warnings,
         )?;
-        let text = documents::text(&traced.document).map_err(Failure::execution)?;
+        let text = documents::to_json(&traced.document).map_err(Failure::execution)?;
         let records = traced.curves()?.records;
-        let warnings = sentences(traced.document.warnings.iter().filter(|warning| !reading.contains(warning)));
+        let warnings = warning_texts(traced.document.warnings.iter().filter(|warning| !reading.contains(warning)));
         Ok(PyTrace { text, warnings, records })
     })
 }

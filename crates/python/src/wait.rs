@@ -15,10 +15,10 @@ const LOOK: Duration = Duration::from_millis(50);
 /// Stack size of the thread, bytes: equal to the main thread of the command line.
 const STACK: usize = 8 << 20;
 
-/// Running work.
-pub struct Underway<T>(Receiver<Result<T, Failure>>);
+/// Work that runs on a separate thread, with the channel of its result.
+pub struct BackgroundWork<T>(Receiver<Result<T, Failure>>);
 
-impl<T: Send + 'static> Underway<T> {
+impl<T: Send + 'static> BackgroundWork<T> {
     /// Work started on a new thread. Fails if no thread can be created.
     pub fn start(work: impl FnOnce() -> Result<T, Failure> + Send + 'static) -> PyResult<Self> {
         let (send, receive) = channel();
@@ -43,15 +43,15 @@ impl<T: Send + 'static> Underway<T> {
     }
 }
 
-/// Result of work that is run and waited for. A signal that raises, such as Ctrl-C, ends the wait at once, while the
-/// work continues to its end.
-pub fn patiently<T: Send + 'static>(
+/// Result of work on a separate thread, after its end. A signal that raises, such as Ctrl-C, ends the wait at once,
+/// while the work continues to its end.
+pub fn run_in_background<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
-    let mut underway = Underway::start(work)?;
+    let mut background_work = BackgroundWork::start(work)?;
     loop {
-        if let Some(done) = underway.wait(py) {
+        if let Some(done) = background_work.wait(py) {
             return done;
         }
         py.check_signals()?;

@@ -1,5 +1,5 @@
-//! An axis over the coordinate ranges of plotters, with its ticks: linear, logarithmic, logarithmic with a separate
-//! place for zero, or a list of names.
+//! Axis over the coordinate ranges of plotters, with its ticks: linear, logarithmic, logarithmic with a separate place
+//! for zero, or a list of names.
 
 use std::ops::Range;
 
@@ -27,7 +27,7 @@ const MAX_MAGNITUDE: f64 = 1e100;
 const FAR: f64 = 20.0;
 /// Maximum number of intervals between the ticks of an axis.
 pub(crate) const MAX_TICK_INTERVALS: usize = 10;
-/// Margin for labels right of an axis, in font sizes.
+/// Maximum length of a label beyond the right end of an axis, in font sizes.
 const MARGIN: f64 = 1.3;
 /// Minimum distance of names under an axis, in font sizes; that of numbers is 1.
 const NAMES_GAP: f64 = 0.25;
@@ -80,13 +80,14 @@ impl Axis {
         Self::new(lo, hi, AxisScale::Linear(tick_rule))
     }
 
-    /// Axis over the finite `values`, with a margin of `pad` times their range on either side.
+    /// Axis over the finite `values`, with a margin of `pad` times their range on either side; 0 to 1 without values.
     pub(crate) fn covering(values: impl IntoIterator<Item = f64>, pad: f64, tick_rule: TickRule) -> Self {
         let (lo, hi) = range(values).unwrap_or((f64::NAN, f64::NAN));
         Self::linear(lo - pad * (hi - lo), hi + pad * (hi - lo), tick_rule)
     }
 
-    /// Logarithmic axis over the positive ones of `values`; a zero among `values` gets a separate place before a break.
+    /// Logarithmic axis over the positive `values` with a margin, 0.1 to 10 without positive values; a zero among
+    /// `values` gets a separate place before a break.
     pub(crate) fn log_covering(values: &[f64]) -> Self {
         let positive = range(values.iter().copied().filter(|v| *v > 0.0));
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
@@ -155,7 +156,8 @@ impl Axis {
         (self.scale == AxisScale::Log { zero: true }).then_some(BREAK_AT)
     }
 
-    /// `true` if a value can be plotted, also beyond the ends of the axis: finite, and positive on a logarithmic scale.
+    /// `true` if a value can be plotted, also beyond the ends of the axis: it is finite; on a logarithmic scale it is
+    /// also positive, or zero if zero has a separate place.
     pub(crate) fn is_plottable(&self, value: f64) -> bool {
         let is_on_scale = match self.scale {
             AxisScale::Log { zero } => value > 0.0 || (zero && value == 0.0),
@@ -174,12 +176,12 @@ impl Axis {
         self.ticks.iter().find(|(tick, _)| *tick == value).map_or_else(String::new, |(_, label)| label.clone())
     }
 
-    /// Width of the widest label, points.
+    /// Width of the widest label in a font of `font` points, points; 0 without labels.
     pub(crate) fn widest(&self, font: f64) -> f64 {
         self.labels().map(|label| text_width(label, font, false)).fold(0.0, f64::max)
     }
 
-    /// The axis with labels wrapped to a width, points.
+    /// The axis with its labels wrapped to a width; `font` and `width` in points.
     pub(crate) fn wrapped(mut self, font: f64, width: f64) -> Self {
         self.ticks.iter_mut().for_each(|(_, label)| *label = wrap(label, font, false, width).join("\n"));
         self
@@ -214,7 +216,7 @@ impl Axis {
         fewest
     }
 
-    /// `true` if the labels under an axis of this width do not touch each other, nor the next panel.
+    /// `true` if the labels under the axis touch neither each other nor the next panel; `width` and `font` in points.
     pub(crate) fn fits(&self, width: f64, font: f64) -> bool {
         let place = |value: f64| f64::from(self.map(&value, (0, 1_000_000))) * 1e-6 * width;
         let half = |label: &str| text_width(label, font, false) / 2.0;
@@ -273,7 +275,8 @@ impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
-    /// Place of a value; one without a place on a logarithmic scale is far beyond the lower end.
+    /// Pixel of a value, with the ends of the axis at the pixels `limit`; a value that is not on a logarithmic scale is
+    /// far beyond the lower end.
     fn map(&self, value: &f64, limit: PixelRange) -> i32 {
         let (start, end) = limit;
         let AxisScale::Log { zero } = self.scale else {

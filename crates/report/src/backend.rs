@@ -38,7 +38,7 @@ pub(crate) type PlotResult<T = ()> = Result<T, DrawingAreaErrorKind<Infallible>>
 
 type BackendResult = Result<(), DrawingErrorKind<Infallible>>;
 
-/// Length in units.
+/// Length in units of the SVG, rounded, from a length in points.
 pub(crate) fn units(points: f64) -> i32 {
     (points * UNITS_PER_POINT).round() as i32
 }
@@ -83,7 +83,7 @@ impl Svg {
         document.group = Some(OpenGroup { group, start, is_beyond: false });
     }
 
-    /// Ends the group.
+    /// Ends the group and writes it, unless it is empty.
     pub(crate) fn end(&self) {
         self.document.borrow_mut().close_group();
     }
@@ -341,13 +341,14 @@ impl DrawingBackend for Svg {
     }
 }
 
-/// Opacity attribute of translucent ink; an attribute of the whole element would need a separate layer, slow to draw.
+/// Opacity attribute of translucent ink; empty for opaque ink. An attribute of the whole element would need a separate
+/// layer, slow to draw.
 fn opacity(ink: &str, alpha: f64) -> String {
     if alpha < 1.0 { format!(" {ink}-opacity=\"{alpha}\"") } else { String::new() }
 }
 
-/// Text for an element or for the value of an attribute. XML allows neither control characters nor some others, not
-/// even escaped.
+/// Text escaped for an element or the value of an attribute, without the characters that XML does not allow even if
+/// escaped, such as control characters.
 fn escaped(text: &str) -> String {
     let clean: String = text.chars().filter(|&c| !is_markup(c) && is_printable(c)).collect();
     crate::html::escaped(&clean)

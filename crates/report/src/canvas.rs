@@ -1,4 +1,4 @@
-//! The page in points, for elements outside charts: keys, notes, markers, dimension lines, arrow heads. All are made of
+//! Page in points, for elements outside charts: legends, notes, markers, dimension lines, arrow heads. All are made of
 //! plotters' elements; elements with an undefined coordinate are omitted.
 
 use plotters::coord::Shift;
@@ -9,7 +9,7 @@ use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform
 
 use crate::backend::{PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::fonts::{FAMILY, text_width};
-use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
+use crate::palette::{CurveStyle, Dash, INK, Marker, PAPER, SOLID};
 
 /// Place on the page, points from the upper left corner.
 pub(crate) type PagePoint = (f64, f64);
@@ -35,7 +35,7 @@ impl Rect {
         self.y + self.h
     }
 
-    /// `true` if a place is inside the rectangle or on its edge, with a tolerance for rounding.
+    /// `true` if a place is inside the rectangle or on its edge, with a tolerance of 0.1 points.
     pub(crate) fn contains(&self, (x, y): PagePoint) -> bool {
         let slack = 0.1;
         x >= self.x - slack && x <= self.right() + slack && y >= self.y - slack && y <= self.bottom() + slack
@@ -58,7 +58,7 @@ impl Stroke {
         Self { colour, opacity: 1.0, width, dash: SOLID }
     }
 
-    /// The same style for plotters.
+    /// Colour, opacity and width for plotters; dashes are an attribute of the SVG group.
     pub(crate) fn style(&self) -> ShapeStyle {
         ShapeStyle {
             color: self.colour.mix(self.opacity),
@@ -101,7 +101,7 @@ impl TextLine {
         [left, left + self.width()]
     }
 
-    /// The same style for plotters.
+    /// Font, colour and anchor for plotters.
     pub(crate) fn style(&self) -> TextStyle<'static> {
         let weight = if self.is_bold { FontStyle::Bold } else { FontStyle::Normal };
         let turn = if self.is_turned { FontTransform::Rotate270 } else { FontTransform::None };
@@ -110,7 +110,7 @@ impl TextLine {
     }
 }
 
-/// Width of the edge of a text on either side of its letters, in font sizes.
+/// Width of the white edge about the letters of a text, in font sizes.
 const HALO: f64 = 0.12;
 
 /// Page to draw on, with coordinates in points.
@@ -134,7 +134,7 @@ impl Canvas {
         self.area.draw(&Polygon::new(points, colour.mix(opacity).filled()))
     }
 
-    /// Outline of a rectangle.
+    /// Draws the outline of a rectangle.
     pub(crate) fn outline(&self, rect: Rect, stroke: Stroke) -> PlotResult {
         let corners = [page_units((rect.x, rect.y)), page_units((rect.right(), rect.bottom()))];
         self.svg.begin(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..SvgGroup::default() });
@@ -148,7 +148,7 @@ impl Canvas {
         self.area.draw(&Text::new(text.text.clone(), places[0], text.style()))
     }
 
-    /// Text with a white edge about its letters, for places with lines underneath.
+    /// Draws a text with a white edge about its letters, for places with lines underneath.
     pub(crate) fn text_with_halo(&self, place: PagePoint, text: &TextLine) -> PlotResult {
         self.svg.begin(SvgGroup { halo: Some(HALO * text.size), ..SvgGroup::default() });
         self.text(place, text)?;
@@ -161,7 +161,7 @@ impl Canvas {
         elements.iter().try_for_each(|element| self.area.draw(element))
     }
 
-    /// Arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
+    /// Draws an arrow head of `size` points with its tip at `(x, y)`, pointing along the unit vector `(dx, dy)`.
     pub(crate) fn arrow_head(&self, (x, y): PagePoint, (dx, dy): PagePoint, size: f64, colour: RGBColor) -> PlotResult {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
@@ -197,8 +197,8 @@ fn polygon<C: Clone + 'static>(at: &C, corners: impl Iterator<Item = PagePoint>,
     (EmptyElement::at(at.clone()) + Polygon::new(corners, colour.filled())).into_dyn()
 }
 
-/// Marker of `radius` points, with a white edge that separates it from lines and neighbours.
-pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec<Element<C>> {
+/// Elements of a marker of `radius` points; a white edge separates it from lines and neighbours.
+pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, style: &CurveStyle) -> Vec<Element<C>> {
     let circle = |scale: f64, colour: RGBColor| {
         let size = units(scale * radius).max(1) as u32;
         (EmptyElement::at(at.clone()) + Circle::new((0, 0), size, colour.filled())).into_dyn()
@@ -209,11 +209,11 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
     };
     let stroke = |[from, to]: [(f64, f64); 2]| {
         let ends = [from, to].map(|(x, y)| self::page_units((radius * x, radius * y)));
-        let style = Stroke::solid(look.colour, 0.55 * radius).style();
-        (EmptyElement::at(at.clone()) + PathElement::new(ends.to_vec(), style)).into_dyn()
+        let shape_style = Stroke::solid(style.colour, 0.55 * radius).style();
+        (EmptyElement::at(at.clone()) + PathElement::new(ends.to_vec(), shape_style)).into_dyn()
     };
     let strokes = |lines: [[(f64, f64); 2]; 2]| [circle(1.1, PAPER)].into_iter().chain(lines.map(stroke)).collect();
-    let corners: &[(f64, f64)] = match look.marker {
+    let corners: &[(f64, f64)] = match style.marker {
         Marker::Plus => return strokes([[(-1.1, 0.0), (1.1, 0.0)], [(0.0, -1.1), (0.0, 1.1)]]),
         Marker::Cross => return strokes([[(-0.9, -0.9), (0.9, 0.9)], [(-0.9, 0.9), (0.9, -0.9)]]),
         Marker::Circle => &[],
@@ -223,12 +223,12 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, look: &Look) -> Vec
         Marker::Diamond => &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)],
         Marker::Star => &STAR,
     };
-    let hole = look.hollow.then(|| shape(0.52, PAPER, corners));
-    [shape(1.25, PAPER, corners), shape(1.0, look.colour, corners)].into_iter().chain(hole).collect()
+    let hole = style.hollow.then(|| shape(0.52, PAPER, corners));
+    [shape(1.25, PAPER, corners), shape(1.0, style.colour, corners)].into_iter().chain(hole).collect()
 }
 
-/// Ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`. A white edge separates it from
-/// the lines under it.
+/// Elements of a ship seen from above, `length` points long, with her bow along the unit vector `(dx, dy)`; a white
+/// edge separates her from the lines underneath.
 pub(crate) fn ship_outline<C: Clone + 'static>(
     at: C,
     (dx, dy): PagePoint,

@@ -23,7 +23,7 @@ pub(crate) fn colour(text: &str) -> Option<RGBColor> {
 }
 
 impl StyleChanges {
-    /// Replacement of a colour, or the colour itself.
+    /// Replacement of a colour; the colour itself if it has none.
     pub(crate) fn replacement(&self, colour: RGBColor) -> RGBColor {
         self.colours.iter().find(|(old, _)| *old == colour).map_or(colour, |(_, new)| *new)
     }

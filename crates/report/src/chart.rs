@@ -12,10 +12,10 @@ use crate::axis::Axis;
 use crate::backend::{Bounds, PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
-use crate::palette::{INK, Look, PAPER};
+use crate::palette::{CurveStyle, INK, PAPER};
 use crate::theme::Theme;
 
-/// Chart of plotters.
+/// Chart of plotters with two axes, drawn as SVG.
 pub(crate) type SvgChart = ChartContext<'static, Svg, Cartesian2d<Axis, Axis>>;
 
 /// Distance beyond the frame, units, from which plotters moves points to the edge. It is large, so that the lines to
@@ -53,7 +53,7 @@ impl Chart {
         Self { data: wide.apply_coord_spec(chart.as_coord_spec().clone()), canvas, rect, x, y }
     }
 
-    /// Right end of the data, points: the beginning of the space for numbers, without such a space the frame.
+    /// Right end of the data, points: the beginning of the space for numbers, or the frame without such a space.
     pub(crate) fn data_right(&self) -> f64 {
         Some(self.x.last)
             .filter(|last| last.is_finite())
@@ -61,7 +61,7 @@ impl Chart {
             .unwrap_or(self.rect.right())
     }
 
-    /// Frame in units.
+    /// Frame in units of the SVG.
     pub(crate) fn bounds(&self) -> Bounds {
         [self.rect.x, self.rect.y, self.rect.right(), self.rect.bottom()].map(units)
     }
@@ -80,11 +80,11 @@ impl Chart {
 
     /// Page point of a data point, also outside the frame; `None` if it is not on the scales.
     pub(crate) fn page_point(&self, x: f64, y: f64) -> Option<PagePoint> {
-        self.reach(x, y).filter(|_| self.is_plottable(&(x, y)))
+        self.unclipped_page_point(x, y).filter(|_| self.is_plottable(&(x, y)))
     }
 
     /// Page point of a data point; one below a logarithmic scale is put far beyond the lower end. `None` for NaN.
-    pub(crate) fn reach(&self, x: f64, y: f64) -> Option<PagePoint> {
+    pub(crate) fn unclipped_page_point(&self, x: f64, y: f64) -> Option<PagePoint> {
         let (across, up) = self.data.map_coordinate(&(x, y));
         (!x.is_nan() && !y.is_nan()).then_some((f64::from(across) / UNITS_PER_POINT, f64::from(up) / UNITS_PER_POINT))
     }
@@ -94,7 +94,7 @@ impl Chart {
         self.page_point(x, y).filter(|place| self.rect.contains(*place))
     }
 
-    /// Draws elements at values, all in one group.
+    /// Draws elements at values of the axes, all in one group.
     pub(crate) fn draw(&self, group: SvgGroup, elements: impl IntoIterator<Item = Element<(f64, f64)>>) -> PlotResult {
         self.canvas.svg.begin(group);
         elements.into_iter().try_for_each(|element| self.data.draw(&element))?;
@@ -102,7 +102,7 @@ impl Chart {
         Ok(())
     }
 
-    /// SVG group of the series `name` of the key, clipped at the frame.
+    /// SVG group of the series `name` of the legend, clipped at the frame.
     fn cut(&self, name: Option<&str>) -> SvgGroup {
         SvgGroup { clip: Some(self.bounds()), ..SvgGroup::named(name) }
     }
@@ -111,7 +111,7 @@ impl Chart {
         self.x.is_plottable(*x) && self.y.is_plottable(*y)
     }
 
-    /// Line through pairs, broken at pairs that are not on the scales.
+    /// Draws a line through pairs, broken at pairs that are not on the scales.
     pub(crate) fn line(
         &self,
         name: Option<&str>,
@@ -126,13 +126,13 @@ impl Chart {
         self.draw(SvgGroup { dash: Some((stroke.dash, stroke.width)), ..self.cut(name) }, lines)
     }
 
-    /// Area between two curves.
+    /// Draws the area between two curves.
     pub(crate) fn band(&self, name: Option<&str>, [lower, upper]: [&PlotCurve; 2], colour: RGBAColor) -> PlotResult {
         let edge = |curve: &PlotCurve| curve.finite_pairs().filter(|pair| self.is_plottable(pair)).collect::<Vec<_>>();
         self.area(name, edge(lower).into_iter().chain(edge(upper).into_iter().rev()), colour)
     }
 
-    /// Area with these corners.
+    /// Draws the area with these corners.
     pub(crate) fn area(
         &self,
         name: Option<&str>,
@@ -143,12 +143,12 @@ impl Chart {
         self.draw(self.cut(name), [area.into_dyn()])
     }
 
-    /// Rectangle between two opposite corners.
+    /// Draws a rectangle from its ends on both axes.
     pub(crate) fn rectangle(&self, [left, right]: [f64; 2], [low, high]: [f64; 2], colour: RGBAColor) -> PlotResult {
         self.area(None, [(left, low), (right, low), (right, high), (left, high)], colour)
     }
 
-    /// Dots at pairs inside the frame.
+    /// Draws dots of `radius` points at the pairs inside the frame.
     pub(crate) fn dots(
         &self,
         name: Option<&str>,
@@ -160,18 +160,18 @@ impl Chart {
         self.draw(SvgGroup::named(name), pairs.into_iter().filter(|&(x, y)| self.inside(x, y).is_some()).map(dot))
     }
 
-    /// Marker at a pair inside the frame, drawn whole even on the frame.
-    pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, look: &Look) -> PlotResult {
+    /// Draws a marker of `radius` points at a pair inside the frame, whole even on the frame.
+    pub(crate) fn marker(&self, name: Option<&str>, x: f64, y: f64, radius: f64, style: &CurveStyle) -> PlotResult {
         let is_inside = self.inside(x, y).is_some();
-        self.draw(SvgGroup::named(name), marker((x, y), radius, look).into_iter().filter(|_| is_inside))
+        self.draw(SvgGroup::named(name), marker((x, y), radius, style).into_iter().filter(|_| is_inside))
     }
 
-    /// Interval with an arrow head at an end beyond the frame; returns whether there is such an end. An infinite end is
-    /// beyond every frame.
+    /// Draws an interval with an arrow head at an end beyond the frame; returns whether there is such an end. An
+    /// infinite end is beyond every frame.
     pub(crate) fn bar(&self, name: Option<&str>, bar: &Bar, theme: &Theme) -> PlotResult<bool> {
         let Bar { y, ends, is_capped, stroke } = *bar;
         let [lo, hi] = [ends[0].min(ends[1]), ends[0].max(ends[1])].map(|end| end.clamp(-f64::MAX, f64::MAX));
-        let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.reach(end, y)) else {
+        let [Some((left, height)), Some((right, _))] = [lo, hi].map(|end| self.unclipped_page_point(end, y)) else {
             return Ok(false);
         };
         let width = units(theme.marker).max(2) as u32;
@@ -189,20 +189,20 @@ impl Chart {
         Ok(beyond.iter().any(|end| end.0))
     }
 
-    /// Line from bottom to top, if its value is inside the frame.
+    /// Draws a line from bottom to top, if its value `x` is inside the frame.
     pub(crate) fn vertical(&self, name: Option<&str>, x: f64, stroke: Stroke) -> PlotResult {
         let is_inside = self.page_x(x).is_some_and(|place| self.rect.contains((place, self.rect.y)));
         let (low, high) = self.y.ends();
         self.line(name, [(x, low), (x, high)].into_iter().filter(|_| is_inside), stroke)
     }
 
-    /// Line from left to right.
+    /// Draws a line from left to right at the value `y`.
     pub(crate) fn horizontal(&self, y: f64, stroke: Stroke) -> PlotResult {
         let (low, high) = self.x.ends();
         self.line(None, [(low, y), (high, y)], stroke)
     }
 
-    /// Frame over the data, with two short slanted lines at the break of a logarithmic axis.
+    /// Draws the frame over the data, with two short slanted lines at the break of a logarithmic axis.
     pub(crate) fn frame(&self, theme: &Theme) -> PlotResult {
         let stroke = Stroke::solid(INK, theme.thin);
         self.canvas.outline(self.rect, stroke)?;

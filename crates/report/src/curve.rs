@@ -25,7 +25,7 @@ const KEPT_OF_RUN: usize = 5;
 /// 95 % quantile of χ² with two degrees of freedom.
 const CHI_SQUARED: f64 = 5.991_464_547;
 
-/// Number of corners of a drawn ellipse.
+/// Number of corners of a drawn contour.
 const CORNERS: usize = 96;
 
 impl PlotCurve {
@@ -61,8 +61,8 @@ impl PlotCurve {
         thin
     }
 
-    /// Closed 95 % contour of a bivariate normal distribution; empty if the covariance is not finite or its first
-    /// variance is not positive.
+    /// Closed 95 % contour of a bivariate normal distribution, from its mean and covariance matrix; empty if the
+    /// covariance is not finite or its first variance is not positive.
     pub fn contour95([x, y]: [f64; 2], [[a, b], [_, c]]: [[f64; 2]; 2]) -> Self {
         // Cholesky: a point of the unit circle is multiplied by L.
         let l11 = a.sqrt();
@@ -80,7 +80,7 @@ impl PlotCurve {
         Self { x, y }
     }
 
-    /// Pairs of the curve, gaps included.
+    /// Pairs (x, y) of the curve, with the gaps, in which a number is not finite.
     pub fn pairs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.x.iter().copied().zip(self.y.iter().copied())
     }

@@ -54,7 +54,8 @@ impl Drawing {
 
     /// PNG of the drawing with at most 256 colours and its resolution in pixels per metre.
     ///
-    /// Fails with [`ReportError::TooLarge`] if a side is longer than 20 000 pixels.
+    /// Fails with [`ReportError::TooLarge`] if a side is longer than 20 000 pixels, and if the SVG cannot be rasterised
+    /// or the PNG cannot be encoded.
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
         let (width_px, height_px) = self.pixels();
         let too_large = || ReportError::TooLarge { width_px, height_px };

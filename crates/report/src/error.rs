@@ -1,10 +1,10 @@
-//! Errors of writing a figure to a file. Drawing itself never fails: undefined numbers are omitted.
+//! Errors of themes, image files and pages. Drawing itself never fails: undefined numbers are omitted.
 
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Reason why a figure could not be made or written.
+/// Error of a theme, of an image file or of a page.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ReportError {

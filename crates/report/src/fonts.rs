@@ -1,5 +1,5 @@
-//! The typeface of every figure: a subset of DejaVu Sans compiled into the program, so that a figure looks the same on
-//! a machine without any font. The subset holds Latin, Greek, combining accents, sub- and superscripts, arrows and the
+//! Typeface of every figure: a subset of DejaVu Sans compiled into the program, so that a figure looks the same on a
+//! machine without any font. The subset holds Latin, Greek, combining accents, sub- and superscripts, arrows and the
 //! common mathematical operators; a character outside it is not drawn.
 
 use std::sync::{Arc, OnceLock};
@@ -27,7 +27,7 @@ static REGULAR: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");
 static BOLD: &[u8] = include_bytes!("../fonts/DejaVuSans-Bold-subset.ttf");
 static OBLIQUE: &[u8] = include_bytes!("../fonts/DejaVuSans-Oblique-subset.ttf");
 
-/// Fonts in the form that the rasteriser needs.
+/// Database of the embedded fonts, for the rasteriser.
 pub(crate) fn database() -> Arc<Database> {
     static DATABASE: OnceLock<Arc<Database>> = OnceLock::new();
     DATABASE

@@ -7,18 +7,18 @@ use crate::backend::PlotResult;
 use crate::canvas::{Canvas, PagePoint, Rect, Stroke, TextLine, marker, page_units, ship_outline};
 use crate::fonts::{LINE_SPACING, text_width};
 use crate::lines::wrap;
-use crate::palette::{CurveOrigin, Dash, INK, Look};
+use crate::palette::{CurveOrigin, CurveStyle, Dash, INK};
 use crate::theme::Theme;
 
 /// Symbol of a legend entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum LegendSymbol {
     Nothing,
-    /// Line, or an area as a thick one.
+    /// Line; a wide line for an area.
     Line(Stroke),
     Dots(RGBColor),
-    Marker(Look),
-    LineAndMarker(Stroke, Look),
+    Marker(CurveStyle),
+    LineAndMarker(Stroke, CurveStyle),
     /// Short line from bottom to top.
     Upright(Stroke),
     /// Outlined cell.
@@ -56,12 +56,12 @@ impl LegendEntry {
             }
     }
 
-    /// Width of sample and name, points.
+    /// Width of symbol and name, points.
     pub(crate) fn width(&self, theme: &Theme) -> f64 {
         self.sample_width(theme) + text_width(&self.label, theme.small_font, false)
     }
 
-    /// Lines of the name in a width that includes the sample, points.
+    /// Lines of the name, if symbol and name together have `room` points of width.
     pub(crate) fn lines(&self, room: f64, theme: &Theme) -> Vec<String> {
         wrap(&self.label, theme.small_font, false, room - self.sample_width(theme))
     }
@@ -79,11 +79,11 @@ impl LegendEntry {
         match self.sample {
             LegendSymbol::Nothing | LegendSymbol::Line(_) => {}
             LegendSymbol::Dots(colour) => {
-                let dot = Look { colour, ..CurveOrigin::Record.look() };
+                let dot = CurveStyle { colour, ..CurveOrigin::Record.style() };
                 canvas.draw_elements(marker(page_units(centre), 1.2 * theme.dot, &dot))?;
             }
-            LegendSymbol::Marker(look) | LegendSymbol::LineAndMarker(_, look) => {
-                canvas.draw_elements(marker(page_units(centre), theme.marker, &look))?;
+            LegendSymbol::Marker(style) | LegendSymbol::LineAndMarker(_, style) => {
+                canvas.draw_elements(marker(page_units(centre), theme.marker, &style))?;
             }
             LegendSymbol::Upright(stroke) => canvas.line(&[(centre.0, y - half), (centre.0, y + half)], stroke)?,
             LegendSymbol::Outline(dash) => {
@@ -103,7 +103,7 @@ impl LegendEntry {
     }
 }
 
-/// Entries in rows of a width, points, as many in each as fit.
+/// Entries in rows at most `width` points wide, as many in each as fit; a wider entry has a separate row.
 pub(crate) fn rows<'a>(entries: &'a [LegendEntry], width: f64, theme: &Theme) -> Vec<&'a [LegendEntry]> {
     let mut rows: Vec<&[LegendEntry]> = Vec::new();
     let mut start = 0;

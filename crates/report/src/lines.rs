@@ -2,7 +2,7 @@
 
 use crate::fonts::text_width;
 
-/// Line spacing of keys and remarks, in font sizes.
+/// Line spacing of legends and remarks, in font sizes.
 pub(crate) const LEADING: f64 = 1.35;
 
 /// Lines of [`wrap`], as equal in length as possible without breaking a word.

@@ -3,7 +3,7 @@
 
 use crate::printable::{escaped, is_printable};
 
-/// Literal text in a line or a cell, without any Markdown mark.
+/// Text escaped for a line or a table cell, so that all its characters are shown literally.
 pub fn text(text: &str) -> String {
     let text = escaped(text);
     let mut out = String::with_capacity(text.len() + 8);
@@ -27,7 +27,9 @@ pub fn text(text: &str) -> String {
     out
 }
 
-/// Text of the program whose commands in backticks stay code; everything else is as in [`text`].
+/// Sentence of the program, escaped as by [`text`] except for commands in backticks, which stay code. A command has
+/// only letters, digits, blanks and hyphens; if a part in backticks is no command or a backtick has no partner, all
+/// backticks are escaped.
 pub fn sentence(sentence: &str) -> String {
     let is_command = |part: &str| part.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, ' ' | '-'));
     let parts: Vec<&str> = sentence.split('`').collect();

@@ -7,13 +7,13 @@ pub const MISSING: &str = "–";
 /// Range of magnitudes written without a power of ten.
 const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
 
-/// Maximum number of decimals with information in a double.
+/// Maximum number of decimals: a double has about 15 significant digits.
 const MAX_DECIMALS: i32 = 15;
 
 /// Approximate width of a 95 % interval in standard deviations.
-const STANDARD_DEVIATIONS: f64 = 4.0;
+const INTERVAL_95_WIDTH_SD: f64 = 4.0;
 
-/// Count with its word, such as "1 record" and "2 records".
+/// Count with a noun of regular plural, such as "1 record" and "2 records".
 pub fn counted(count: u64, word: &str) -> String {
     format!("{count} {word}{}", if count == 1 { "" } else { "s" })
 }
@@ -50,7 +50,8 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two if it starts with 1 or 2 or would round up to 10,
 /// for which one digit is too coarse), the value to the same decimal.
 ///
-/// Without a usable uncertainty the value is alone, with five significant digits.
+/// Without a finite positive uncertainty the value is alone, with five significant digits. Numbers have at most 15
+/// decimals.
 pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
     match sd.filter(|sd| sd.is_finite() && *sd > 0.0) {
         Some(sd) if value.is_finite() => {
@@ -77,7 +78,7 @@ pub fn uncertain(value: f64, sd: Option<f64>) -> String {
 pub fn interval(bounds: Option<[f64; 2]>) -> String {
     match bounds {
         Some([lo, hi]) if lo.is_finite() && hi.is_finite() => {
-            let sd = (hi - lo).abs() / STANDARD_DEVIATIONS;
+            let sd = (hi - lo).abs() / INTERVAL_95_WIDTH_SD;
             let decimals = if sd > 0.0 { decimals_of_uncertainty(sd) } else { decimals_for(lo, 5) };
             format!("[{}, {}]", fixed(lo, decimals), fixed(hi, decimals))
         }
@@ -85,10 +86,10 @@ pub fn interval(bounds: Option<[f64; 2]>) -> String {
     }
 }
 
-/// A value with as many decimals as [`interval`] gives the ends of its interval; four significant digits without an
+/// `value` with as many decimals as [`interval`] gives the ends of its interval; four significant digits without an
 /// interval of positive length.
 pub fn with_supported_digits(value: f64, bounds: Option<[f64; 2]>) -> String {
-    match bounds.map(|[lo, hi]| (hi - lo) / STANDARD_DEVIATIONS) {
+    match bounds.map(|[lo, hi]| (hi - lo) / INTERVAL_95_WIDTH_SD) {
         Some(sd) if sd.is_finite() && sd > 0.0 => fixed(value, decimals_of_uncertainty(sd)),
         _ => significant(value, 4),
     }

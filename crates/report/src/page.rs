@@ -1,4 +1,4 @@
-//! A page: a filled-in Markdown template, and its figures at the places given by the template.
+//! Page of a report: a filled-in Markdown template, and its figures at the places given by the template.
 //!
 //! A template is Markdown with two additional marks: a paragraph `![stem]` is the figure of that stem, and a headline
 //! `##~ Title` begins a part that a browser shows on request.
@@ -55,7 +55,7 @@ impl<P: PartialEq> PlacedFigures<P> {
         self.0.iter().any(|(other, _)| *other == place)
     }
 
-    /// Marks of the figures of a place, for a template.
+    /// Marks of the figures of a place, for a template; empty without figures.
     pub fn marks_at(&self, place: P) -> String {
         self.0
             .iter()

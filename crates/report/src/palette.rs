@@ -1,7 +1,7 @@
-//! Looks of origins: one colour, marker and dash for every identification method, the record, the truth and the bound,
-//! the same in every figure. The colours of methods are those of Okabe & Ito (2008), "Color universal design",
-//! distinguishable with any common colour blindness. Two methods have the wine red and the indigo of Tol (2021)
-//! instead, because yellow is too pale on paper and black is the colour of the truth. Marker and dash repeat the
+//! Looks of curves by their origin: one colour, marker and dash for every identification method, the record, the truth
+//! and the bound, the same in every figure. The colours of methods are those of Okabe & Ito (2008), "Color universal
+//! design", distinguishable with any common colour blindness. Two methods have the wine red and the indigo of Tol
+//! (2021) instead, because yellow is too pale on paper and black is the colour of the truth. Marker and dash repeat the
 //! distinction for prints in grey.
 
 use serde::{Deserialize, Serialize};
@@ -58,18 +58,18 @@ impl CurveOrigin {
         }
     }
 
-    /// Look of the origin.
-    pub fn look(&self) -> Look {
+    /// Colour, marker and dash of the origin.
+    pub fn style(&self) -> CurveStyle {
         match self {
-            Self::Record => Look::new(RECORD, Marker::Circle, SOLID),
-            Self::Truth => Look::new(INK, Marker::Circle, SOLID),
-            Self::Published => Look::new(RECORD, Marker::Cross, DASHED),
-            Self::Bound => Look::new(INK, Marker::Plus, DOTTED),
-            Self::Before => Look::new(BEFORE, Marker::Square, DASHED),
-            Self::After => Look::new(HEADING, Marker::Circle, SOLID),
-            Self::Method(id) => method_look(id),
-            Self::Variant { method, number, .. } => variant_look(method, *number),
-            Self::Series { number, .. } => series_look(*number),
+            Self::Record => CurveStyle::new(RECORD, Marker::Circle, SOLID),
+            Self::Truth => CurveStyle::new(INK, Marker::Circle, SOLID),
+            Self::Published => CurveStyle::new(RECORD, Marker::Cross, DASHED),
+            Self::Bound => CurveStyle::new(INK, Marker::Plus, DOTTED),
+            Self::Before => CurveStyle::new(BEFORE, Marker::Square, DASHED),
+            Self::After => CurveStyle::new(HEADING, Marker::Circle, SOLID),
+            Self::Method(id) => method_style(id),
+            Self::Variant { method, number, .. } => variant_style(method, *number),
+            Self::Series { number, .. } => series_style(*number),
         }
     }
 }
@@ -134,9 +134,9 @@ pub enum Marker {
     Star,
 }
 
-/// Look of one origin.
+/// Style of the curves of an origin: colour, marker and dash.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct CurveStyle {
     /// Colour of line and marker.
     pub colour: RGBColor,
     /// Shape at the data points.
@@ -147,22 +147,22 @@ pub struct Look {
     pub hollow: bool,
 }
 
-impl Look {
+impl CurveStyle {
     const fn new(colour: RGBColor, marker: Marker, dash: Dash) -> Self {
         Self { colour, marker, dash, hollow: false }
     }
 }
 
-/// Methods with their looks, in the order of figures.
-const METHODS: [(&str, Look); 8] = [
-    ("fourier-published", Look::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
-    ("fourier-projected", Look::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
-    ("characteristic-points", Look::new(RGBColor(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
-    ("least-squares", Look::new(RGBColor(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
-    ("integral-least-squares", Look::new(RGBColor(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
-    ("output-error", Look::new(RGBColor(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
-    ("srivc", Look::new(RGBColor(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
-    ("maximum-likelihood", Look::new(RGBColor(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
+/// Methods with their styles, in the order of figures.
+const METHODS: [(&str, CurveStyle); 8] = [
+    ("fourier-published", CurveStyle::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
+    ("fourier-projected", CurveStyle::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
+    ("characteristic-points", CurveStyle::new(RGBColor(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
+    ("least-squares", CurveStyle::new(RGBColor(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
+    ("integral-least-squares", CurveStyle::new(RGBColor(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
+    ("output-error", CurveStyle::new(RGBColor(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
+    ("srivc", CurveStyle::new(RGBColor(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+    ("maximum-likelihood", CurveStyle::new(RGBColor(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
 /// Colours of external estimators, which no method has: olive, brown, magenta, grey, sand, teal (after Tol, 2021).
@@ -177,19 +177,19 @@ const OUTSIDE: [RGBColor; 6] = [
 
 /// Common id of external estimators.
 const EXTERNAL: &str = "external";
-/// Number of different looks of external estimators: the least common multiple of 6 colours, 5 markers and 4 dashes.
-const LOOKS: u64 = 60;
+/// Number of different styles of external estimators: the least common multiple of 6 colours, 5 markers and 4 dashes.
+const STYLES: u64 = 60;
 
 const BROWN: RGBColor = RGBColor(0x66, 0x11, 0x00);
 
-/// Ids of the methods with a fixed look, in the order of figures.
+/// Ids of the methods with a fixed style, in the order of figures.
 pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
-/// Look of a variant: one of three shades of the colour of its method, a hollow marker, and marker and dash by its
+/// Style of a variant: one of three shades of the colour of its method, a hollow marker, and marker and dash by its
 /// number. External estimators have different colours, which repeat after six.
-fn variant_look(method: &str, number: usize) -> Look {
+fn variant_style(method: &str, number: usize) -> CurveStyle {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
     let (marker, dash) = (MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()]);
@@ -197,39 +197,39 @@ fn variant_look(method: &str, number: usize) -> Look {
     let colour = match method {
         EXTERNAL => OUTSIDE[number % OUTSIDE.len()],
         method => {
-            let RGBColor(red, green, blue) = method_look(method).colour;
+            let RGBColor(red, green, blue) = method_style(method).colour;
             RGBColor(shade(red), shade(green), shade(blue))
         }
     };
-    Look { marker, dash, hollow: true, colour }
+    CurveStyle { marker, dash, hollow: true, colour }
 }
 
-/// Look of a series: a grey, so that it does not look like a method, and marker and dash by its number.
-fn series_look(number: usize) -> Look {
+/// Style of a series: a grey, so that it does not look like a method, and marker and dash by its number.
+fn series_style(number: usize) -> CurveStyle {
     const SHADES: [RGBColor; 3] = [INK, RGBColor(0x5A, 0x5A, 0x5A), RGBColor(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [SOLID, SHORT_DASH, DOTTED, DASH_DOT];
-    Look {
+    CurveStyle {
         hollow: number % 2 == 1,
-        ..Look::new(SHADES[number % SHADES.len()], MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()])
+        ..CurveStyle::new(SHADES[number % SHADES.len()], MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()])
     }
 }
 
-/// Look of a method; a method outside the list has the look of an external estimator, chosen by its name, in all
+/// Style of a method; a method outside the list has the style of an external estimator, chosen by its name, in all
 /// figures.
-fn method_look(id: &str) -> Look {
+fn method_style(id: &str) -> CurveStyle {
     // A trace and the rule that chooses a method are not in the list of methods, but are shown with them.
     match id {
-        "trace" => return Look::new(INK, Marker::Square, SOLID),
-        "recommended" => return Look { hollow: true, ..Look::new(BROWN, Marker::Diamond, DASHED) },
+        "trace" => return CurveStyle::new(INK, Marker::Square, SOLID),
+        "recommended" => return CurveStyle { hollow: true, ..CurveStyle::new(BROWN, Marker::Diamond, DASHED) },
         _ => {}
     }
-    if let Some((_, look)) = METHODS.iter().find(|(method, _)| *method == id) {
-        return *look;
+    if let Some((_, style)) = METHODS.iter().find(|(method, _)| *method == id) {
+        return *style;
     }
     // FNV-1a, because the standard hasher does not guarantee the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    variant_look(EXTERNAL, (hash % LOOKS) as usize)
+    variant_style(EXTERNAL, (hash % STYLES) as usize)
 }
 
 #[cfg(test)]
@@ -247,8 +247,8 @@ mod tests {
 
     #[test]
     fn variants_have_shades_of_the_colour_of_their_method() {
-        let variant = |number| CurveOrigin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
-        let method = CurveOrigin::Method("srivc".into()).look();
+        let variant = |number| CurveOrigin::Variant { label: "other".into(), method: "srivc".into(), number }.style();
+        let method = CurveOrigin::Method("srivc".into()).style();
         assert_eq!(variant(0).colour, method.colour);
         assert_eq!(variant(1).colour, RGBColor(0x51, 0x14, 0x33));
         assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
@@ -256,17 +256,18 @@ mod tests {
 
     #[test]
     fn estimators_outside_differ_in_colour() {
-        let outside = |number| CurveOrigin::Variant { label: "other".into(), method: "external".into(), number }.look();
+        let outside =
+            |number| CurveOrigin::Variant { label: "other".into(), method: "external".into(), number }.style();
         for number in 0..OUTSIDE.len() {
-            assert!(METHODS.iter().all(|(_, look)| look.colour != outside(number).colour));
+            assert!(METHODS.iter().all(|(_, style)| style.colour != outside(number).colour));
             assert!((0..number).all(|other| outside(other).colour != outside(number).colour));
         }
     }
 
     #[test]
-    fn unknown_method_has_a_stable_hollow_look() {
-        let look = CurveOrigin::Method("ridge".into()).look();
-        assert_eq!(look, CurveOrigin::Method("ridge".into()).look());
-        assert!(look.hollow);
+    fn unknown_method_has_a_stable_hollow_style() {
+        let style = CurveOrigin::Method("ridge".into()).style();
+        assert_eq!(style, CurveOrigin::Method("ridge".into()).style());
+        assert!(style.hollow);
     }
 }

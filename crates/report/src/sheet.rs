@@ -1,4 +1,4 @@
-//! Layout of a page: title, key, panels and notes from top to bottom, margins as wide as their labels. Panels of one
+//! Layout of a page: title, legend, panels and notes from top to bottom, margins as wide as their labels. Panels of one
 //! column share the horizontal axis, panels of one row the vertical one. The page is split into drawing areas of
 //! plotters, whose charts draw mesh, axes, ticks and labels; the figures draw the data.
 
@@ -28,14 +28,14 @@ const LIGHT: f64 = 0.45;
 /// Distance from the middle of a line of text to its base line, in font sizes.
 const MIDDLE: f64 = 0.36;
 
-/// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
+/// Axis of a column or of a row of a grid of panels, with its title.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct AxisSide {
+pub(crate) struct TitledAxis {
     pub axis: Axis,
     pub title: String,
 }
 
-impl AxisSide {
+impl TitledAxis {
     pub(crate) fn new(axis: Axis, title: impl Into<String>) -> Self {
         Self { axis, title: title.into() }
     }
@@ -44,14 +44,14 @@ impl AxisSide {
 /// Panels in rows and columns.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Grid {
-    pub columns: Vec<AxisSide>,
+    pub columns: Vec<TitledAxis>,
     /// Rows with their heights in points.
-    pub rows: Vec<(AxisSide, f64)>,
+    pub rows: Vec<(TitledAxis, f64)>,
     /// Text above each panel, row by row; `None` for a panel without text, empty without texts.
     pub heads: Vec<Option<LegendEntry>>,
     /// Number of panels, if the last row may not be full; `None` for full rows.
     pub panels: Option<usize>,
-    /// Common title of all vertical axes, for rows too low to have one each; `None` without a common title.
+    /// Common title of all vertical axes, for rows too low for separate titles; `None` without a common title.
     pub shared_title: Option<String>,
     /// Left margin, points, if it has to agree with another grid; `None` for the width of the labels and titles.
     pub left: Option<f64>,
@@ -60,7 +60,7 @@ pub(crate) struct Grid {
 impl Grid {
     /// Grid of `count` panels with the same axes, in rows of `across`, each `height` points high; the last row may not
     /// be full.
-    pub(crate) fn alike(count: usize, across: usize, column: AxisSide, row: AxisSide, height: f64) -> Self {
+    pub(crate) fn alike(count: usize, across: usize, column: TitledAxis, row: TitledAxis, height: f64) -> Self {
         let rows = vec![(row, height); count.div_ceil(across)];
         Self { panels: Some(count), columns: vec![column; across], rows, ..Self::default() }
     }
@@ -68,7 +68,7 @@ impl Grid {
 
 /// Column of panels.
 struct GridColumn {
-    side: AxisSide,
+    side: TitledAxis,
     /// Left edge of the panels, points.
     left: f64,
     /// Width of the panels, points.
@@ -79,7 +79,7 @@ struct GridColumn {
     below: f64,
 }
 
-/// Figure in the making, filled from top to bottom.
+/// Figure that is being drawn, from top to bottom.
 pub(crate) struct Sheet {
     pub theme: Theme,
     pub canvas: Canvas,
@@ -112,7 +112,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// Draws the key, centred above the content that follows.
+    /// Draws the legend, centred above the content that follows.
     pub(crate) fn legend(&mut self, entries: &[LegendEntry]) -> PlotResult {
         let theme = self.theme.clone();
         let room = theme.width - 2.0 * theme.small_font;
@@ -158,7 +158,7 @@ impl Sheet {
     }
 
     /// Row with its ticks, and with labels and title wrapped.
-    fn row(&self, side: &AxisSide, height: f64) -> AxisSide {
+    fn row(&self, side: &TitledAxis, height: f64) -> TitledAxis {
         let theme = &self.theme;
         let count = ((height / (1.7 * theme.tick_font)) as usize).clamp(2, MAX_TICK_INTERVALS);
         let axis = theme
@@ -166,11 +166,11 @@ impl Sheet {
             .limited(side.axis.clone(), &side.title)
             .ticked(count)
             .wrapped(theme.tick_font, MAX_NAMES_SHARE * theme.width);
-        AxisSide::new(axis, balanced(&side.title, theme.label_font, false, height).join("\n"))
+        TitledAxis::new(axis, balanced(&side.title, theme.label_font, false, height).join("\n"))
     }
 
     /// Column with its ticks, and with labels and title wrapped.
-    fn column(&self, side: &AxisSide, left: f64, width: f64) -> GridColumn {
+    fn column(&self, side: &TitledAxis, left: f64, width: f64) -> GridColumn {
         let theme = &self.theme;
         let axis = theme.changes.limited(side.axis.clone(), &side.title).with_fitting_ticks(width, theme.tick_font);
         let title = wrap(&side.title, theme.label_font, false, width + theme.label_font);
@@ -180,7 +180,7 @@ impl Sheet {
             if is_turned { axis.widest(theme.tick_font) } else { LINE_SPACING * theme.tick_font * lines as f64 };
         let titles = if title.is_empty() { 0.0 } else { (0.45 + LINE_SPACING * title.len() as f64) * theme.label_font };
         let below = 2.0 * self.tick_length() + labels + titles;
-        GridColumn { side: AxisSide::new(axis, title.join("\n")), left, width, is_turned, below }
+        GridColumn { side: TitledAxis::new(axis, title.join("\n")), left, width, is_turned, below }
     }
 
     fn tick_length(&self) -> f64 {
@@ -257,7 +257,7 @@ impl Sheet {
 
     /// Chart of plotters with its mesh, axes and ticks, and with labels and titles if requested: at the left, and
     /// below.
-    fn chart(&self, x: &GridColumn, y: &AxisSide, height: f64, labelled: [bool; 2]) -> PlotResult<Chart> {
+    fn chart(&self, x: &GridColumn, y: &TitledAxis, height: f64, labelled: [bool; 2]) -> PlotResult<Chart> {
         let theme = &self.theme;
         let tick = self.tick_length();
         let beside = if labelled[0] { x.left - self.edge - 0.5 * theme.small_font } else { tick };
@@ -317,7 +317,7 @@ mod tests {
     fn panels_share_edges_and_stay_on_the_page() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
         let mut sheet = Sheet::new(&theme, "title").unwrap();
-        let side = |hi: f64| AxisSide::new(Axis::linear(0.0, hi, TickRule::Decimal), "quantity [unit]");
+        let side = |hi: f64| TitledAxis::new(Axis::linear(0.0, hi, TickRule::Decimal), "quantity [unit]");
         let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
         let charts =
             sheet.grid(Grid { panels: Some(3), columns: vec![side(1.0), side(2.0)], rows, ..Grid::default() }).unwrap();
@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn heads_and_keys_that_are_too_long_go_on_below() {
         let theme = Theme::paper(85.0, 300.0).unwrap();
-        let side = AxisSide::new(Axis::linear(0.0, 1.0, TickRule::Decimal), "x");
+        let side = TitledAxis::new(Axis::linear(0.0, 1.0, TickRule::Decimal), "x");
         let head = |text: &str| Some(LegendEntry::new(LegendSymbol::Nothing, text));
         let drawn = |text: &str| {
             let mut sheet = Sheet::new(&theme, "").unwrap();

@@ -11,9 +11,9 @@ use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, 
 use crate::theme::Theme;
 use plotters::style::RGBColor;
 
-/// Range of font sizes, points.
+/// Minimum and maximum font size, points.
 const FONT: [f64; 2] = [4.0, 30.0];
-/// Range of widths of lines and radii of markers, points.
+/// Minimum and maximum width of lines and radius of markers, points.
 const LINE: [f64; 2] = [0.1, 10.0];
 
 /// Style of figures; keys that are not given are as in the theme. All keys are kebab-case.
@@ -52,7 +52,7 @@ pub enum StyleError {
         /// Minimum and maximum value.
         range: [f64; 2],
     },
-    /// A name that has no colour.
+    /// A key of `colours` that is unknown.
     #[error("[colours] {name}: nothing has this name; expected one of {valid}")]
     Name {
         /// Given name.
@@ -90,7 +90,7 @@ pub enum StyleError {
     },
 }
 
-/// All keys that have a colour.
+/// Keys of `colours`, with their default colours.
 fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
     let parts = [
         ("ink", INK),
@@ -102,7 +102,7 @@ fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
         ("before", BEFORE),
         ("dimension", DIMENSION),
     ];
-    parts.into_iter().chain(method_ids().map(|id| (id, CurveOrigin::Method(id.to_owned()).look().colour)))
+    parts.into_iter().chain(method_ids().map(|id| (id, CurveOrigin::Method(id.to_owned()).style().colour)))
 }
 
 impl Style {

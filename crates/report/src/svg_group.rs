@@ -2,13 +2,13 @@
 
 use crate::palette::Dash;
 
-/// A rectangle in units: left, top, right and bottom.
+/// Rectangle in units of the SVG: left, top, right and bottom.
 pub(crate) type Bounds = [i32; 4];
 
 /// Attributes shared by elements that are drawn together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SvgGroup {
-    /// Name in the key, by which a page in a browser finds the elements; `None` for elements without an entry.
+    /// Name in the legend, by which a page in a browser finds the elements; `None` for elements without an entry.
     pub series: Option<String>,
     /// `true` if the elements are intervals of the values of that series, not values.
     pub is_interval: bool,
@@ -21,7 +21,7 @@ pub(crate) struct SvgGroup {
 }
 
 impl SvgGroup {
-    /// Group of a series, with its name if it has one in the key.
+    /// Group of a series, by its name in the legend; `None` for elements without an entry.
     pub(crate) fn named(series: Option<&str>) -> Self {
         Self { series: series.map(str::to_owned), ..Self::default() }
     }

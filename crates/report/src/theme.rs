@@ -92,7 +92,7 @@ impl Theme {
         }
     }
 
-    /// Titles with limits in a style that are not among `titles`.
+    /// Axis titles that have limits in the style of this theme and are not among `titles`.
     pub fn limits_without_axis(&self, titles: &[String]) -> Vec<&str> {
         let wanted = self.changes.limits.keys().map(String::as_str);
         wanted.filter(|wanted| !titles.iter().any(|title| title == wanted)).collect()

@@ -6,9 +6,10 @@ pub enum TickRule {
     /// Equal steps of 1, 2 or 5 times a power of ten.
     #[default]
     Decimal,
-    /// Degrees: multiples of 30° or 90° over a wide range.
+    /// Degrees: the decimal steps are in units of 30° over 100° or more, and of 90° over 400° or more.
     Angle,
-    /// Seconds, in multiples of 30 s or 60 s over a long time; no free space at the ends.
+    /// Seconds: the decimal steps are in units of 30 s over 100 s or more, and of 60 s over 1000 s or more; no free
+    /// space at the ends.
     Time,
     /// Equal factors (a logarithmic scale). Zero has a separate place before a break, and negative values are omitted.
     Logarithmic,
@@ -17,7 +18,7 @@ pub enum TickRule {
 }
 
 impl TickRule {
-    /// Unit of the ticks over a span: one, 30° or 30 s, 90° or 60 s.
+    /// Unit of the steps of the ticks over a span: 1, 30 (degrees or seconds), 60 (seconds) or 90 (degrees).
     pub(crate) fn unit(self, span: f64) -> f64 {
         match (self, span) {
             (Self::Time, 1e3..) => 60.0,

@@ -1,4 +1,4 @@
-//! Tables are compiled by `pdflatex`, where there is one.
+//! Test that `pdflatex` compiles all tables; skipped without `pdflatex`.
 
 use std::fs;
 use std::path::Path;
@@ -6,10 +6,10 @@ use std::process::Command;
 
 use kempf_report::{Table, TableHead};
 
-/// Maximum box that may stand out of the text, points.
+/// Maximum length by which a box may exceed the width of the text, points.
 const OVERFULL: f64 = 5.0;
 
-/// Everything that tables of this program hold, and more.
+/// Characters that occur in tables of this program, and others.
 const CHARACTERS: &str = "δ−²°ψ₀₁Σ–±ᵀ₂⁻σₖθ³τ√₃∂φ·′ξ¹…∫π½×ωνₙρΔ⁴β≤∞λ⁰≥⁵ᵢₚ₋₊ζγΦⱼχε₉⁹⁶ηΩº→₅₄μ¼ℓₘₒₑ⁷ᵏακ船µ≈∬∓∇←€ₛₐ⁸‖ᵖΓ鄱★●◆▼▲■™\
                           ₈₇₆ⁿ⁺›‹‰•‡†„”“‚’‘—ṙᵗΛʰƒ″∝≠ψ̇K̂K̃K̄r̈\u{a0}\u{2009}";
 const LETTERS: &str = "éÄÅäöüßøåâáŸÿŽžŠšŒœÆæÇçĆćČčĎďĚěŁłŃńŇňŐőŘřŚśŞşŤťŮůŰűŹźŻż";
@@ -92,7 +92,7 @@ fn compile(dir: &Path, name: &str, table: &str) {
         packages.unwrap_or_default()
     );
     fs::write(dir.join(format!("{name}.tex")), document).unwrap();
-    // A long table knows its widths in the second pass.
+    // The column widths of a long table are final only after the second pass.
     for _ in 0..2 {
         let run = Command::new("pdflatex")
             .args(["-interaction=nonstopmode", "-halt-on-error", name])

@@ -6,19 +6,19 @@ pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// Metres per second in one knot (1852 m per hour).
 pub const KNOT: f64 = 1852.0 / 3600.0;
 
-/// Degrees to radians.
+/// Angle in radians, from an angle in degrees.
 #[inline]
 pub fn from_deg(angle_deg: f64) -> f64 {
     angle_deg * DEGREE
 }
 
-/// Radians to degrees.
+/// Angle in degrees, from an angle in radians.
 #[inline]
 pub fn to_deg(angle: f64) -> f64 {
     angle / DEGREE
 }
 
-/// Unwrapping of a heading (rad) in place: jumps of 2π are removed. Missing values (NaN) are skipped.
+/// Unwraps a heading (rad) in place: removes its jumps of 2π. Values that are not finite (missing) are skipped.
 ///
 /// The first finite value is kept; every later value lies within π of the finite value before it.
 pub fn unwrap_heading(heading: &mut [f64]) {

@@ -21,7 +21,7 @@ pub struct MeasuredChannels {
 }
 
 impl MeasuredChannels {
-    /// `true` if a channel was measured.
+    /// `true` if this channel was measured; for the wind, both its speed and its direction.
     pub fn has(&self, channel: Regressor) -> bool {
         match channel {
             Regressor::Speed => self.speed.is_some(),
@@ -83,7 +83,7 @@ pub struct Motion {
     pub sway: Option<f64>,
 }
 
-/// System with a rudder and a heading: x' = f(t, x, input).
+/// Equations of motion of a steered ship: x' = f(t, x, input), with the time t in s.
 ///
 /// The first two states are always heading ψ (rad) and yaw rate r (rad/s); further states belong to the implementation.
 /// A value of this type is immutable during a run: the state vector holds all memory. Parameters in dual numbers give
@@ -92,9 +92,8 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Number of states, at least 2.
     fn dimension(&self) -> usize;
 
-    /// State of a steady straight approach with the given heading (rad) and yaw rate (rad/s), rudder amidships.
-    ///
-    /// `state` has length [`dimension`](Self::dimension) and is overwritten.
+    /// Writes the state of an approach with this heading (rad) and yaw rate (rad/s), rudder amidships, into `state`
+    /// (length [`dimension`](Self::dimension)).
     fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
     /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
@@ -105,15 +104,15 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// The rudder is monotone between two calls: a step ends at every corner of the rudder signal.
     fn update_memory(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
 
-    /// Motion in a state.
+    /// Motion at time `t` (s) in this state, with this input.
     fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;
 
-    /// Dead time between the rudder signal and the acting rudder, s; negative if the recorded rudder lags the heading.
+    /// Dead time from the rudder signal to the acting rudder, s; negative if the clock of the recorded rudder is late.
     fn dead_time(&self) -> R {
         R::from(0.0)
     }
 
-    /// Maximum step, s, at which a fourth-order integrator keeps its accuracy for this system.
+    /// Maximum step, s, at which a fourth-order integrator keeps its accuracy for this system; by default 0.1 s.
     fn largest_step(&self) -> f64 {
         0.1
     }

@@ -55,7 +55,7 @@ impl<R: Real> RungeKutta4<R> {
     }
 }
 
-/// State of the next stage: `h` seconds along the latest rates.
+/// Writes the state of the next stage into `probe`: `state` plus `h` seconds of `rate`.
 #[inline]
 fn probe<R: Real>(probe: &mut [R], state: &[R], rate: &[R], h: f64) {
     for ((probe, &x), &k) in probe.iter_mut().zip(state).zip(rate) {

@@ -42,7 +42,7 @@ pub use dynamics::{Dynamics, Input, MeasuredChannels, Motion, Regressor};
 pub use effects::EffectReal;
 pub use estimation::number::Real;
 pub use first_order::FirstOrder;
-pub use number::{DIRECTIONS, Tangent};
+pub use number::{TANGENT_DERIVATIVES, Tangent};
 pub use particulars::Particulars;
 pub use replayable::{Replayable, ReplayedShip};
 pub use response::{Response, ResponseModel};

@@ -28,7 +28,8 @@ pub enum LinearError {
         /// T1' T2'.
         product: f64,
     },
-    /// No steering: a steady rudder does not turn the ship, so K is zero and T3 undefined.
+    /// No steering: a steady rudder does not turn the ship, so K is zero and T3 undefined. Also for
+    /// coefficients that are not finite.
     #[error("a steady rudder causes no yaw rate: K = 0 and T3 is undefined")]
     NoSteering,
 }
@@ -47,7 +48,7 @@ pub struct PrimeSwayYaw {
     pub b: [f64; 2],
 }
 
-/// Indices in units of L and L/U: K' = K L/U, T' = T U/L.
+/// Nondimensional indices K' = K L/U and T' = T U/L.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrimeIndices {
     /// Turning ability K'.
@@ -114,7 +115,7 @@ impl PrimeSwayYaw {
 }
 
 impl PrimeIndices {
-    /// Indices in seconds of a ship of this length at this speed: K = K' U/L, T = T' L/U.
+    /// Dimensional indices of a ship of this length at this speed: K = K' U/L (1/s), T = T' L/U (s).
     pub fn to_dimensional(&self, particulars: Particulars) -> SecondOrderIndices {
         let unit = particulars.length / particulars.speed;
         SecondOrderIndices { K: self.K / unit, T1: self.T1 * unit, T2: self.T2 * unit, T3: self.T3 * unit }
@@ -126,7 +127,7 @@ impl SecondOrderIndices {
     ///
     /// It is the limit of slow steering only. A first-order response fitted to a 10/10 zig-zag has neither this T nor
     /// this K: for (T1, T2, T3) = (20, 2.5, 6.2) s the best fit is 12 % low in K and 18 % low in T, for
-    /// (25, 4, 12.7) s 18 % and 35 %. The ratio K/T is roughly preserved.
+    /// (25, 4, 12.7) s 18 % and 35 %. The ratio K/T is 7 % and 26 % high.
     pub fn first_order_T(&self) -> f64 {
         self.T1 + self.T2 - self.T3
     }

@@ -2,8 +2,8 @@
 
 use estimation::number::Dual;
 
-/// Number of derivatives of a [`Tangent`]: enough for a first-order response and an effect with two parameters.
-pub const DIRECTIONS: usize = 6;
+/// Number of derivatives of a [`Tangent`]; a replay with more unknowns requires several passes.
+pub const TANGENT_DERIVATIVES: usize = 6;
 
 /// Dual number in which a response is replayed.
-pub type Tangent = Dual<DIRECTIONS>;
+pub type Tangent = Dual<TANGENT_DERIVATIVES>;

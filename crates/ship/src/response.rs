@@ -24,7 +24,7 @@ use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETER_COUNT: usize = 3;
 
-/// Base parameters.
+/// Base parameters a = 1/T (1/s), b = K/T (1/s²) and δ_r (rad).
 pub const BASE_PARAMETERS: [Parameter; BASE_PARAMETER_COUNT] = [
     Parameter::even(["inverse_T", "1/T", "1/s"], [0.05, 0.05], [-10.0, 10.0]),
     Parameter::even(["K_over_T", "K/T", "1/s²"], [5e-3, 5e-3], [0.0, 100.0]),
@@ -97,7 +97,7 @@ impl ResponseModel {
         Self { effects, places, parameters, states, with_memory, second_order }
     }
 
-    /// Base alone.
+    /// First-order response without effects.
     pub fn first_order() -> Self {
         Self::new(Vec::new())
     }
@@ -155,7 +155,7 @@ impl Response {
         ResponseModel::first_order().with_parameters(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
     }
 
-    /// Base parameters.
+    /// Base parameters a = 1/T, b = K/T and δ_r.
     pub fn first_order(&self) -> FirstOrder {
         FirstOrder { inverse_T: self.parameters[0], K_over_T: self.parameters[1], rudder_bias: self.parameters[2] }
     }
@@ -172,7 +172,7 @@ impl Response {
 }
 
 impl<R: EffectReal> Response<R> {
-    /// Structure.
+    /// Structure of the response: base and effects, without parameter values.
     pub fn model(&self) -> &ResponseModel {
         &self.model
     }
@@ -368,7 +368,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::effect_equations(effect).dead_time(p))
     }
 
-    /// Fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
+    /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
     fn largest_step(&self) -> f64 {
         (self.min_time_constant() / 50.0).clamp(1e-3, 0.1)
     }

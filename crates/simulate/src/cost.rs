@@ -7,7 +7,7 @@ use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 
 use crate::error::{Check, Requirement, SpecificationError};
 use crate::limits::MAX_STEPS;
-use crate::propagate::{ClosedForm, exposed};
+use crate::propagate::{ClosedForm, ship_in_weather};
 use crate::simulated_ship::Solver;
 use crate::simulation::Simulation;
 use crate::wave_path;
@@ -116,10 +116,12 @@ impl Simulation {
         let step = match (self.closed_form(), self.solver) {
             (Some(ship), _) => ClosedForm::longest_step(&ship),
             (None, Solver::RungeKutta(step)) => step,
-            (None, Solver::Automatic) => exposed::largest_step(dynamics.largest_step(), self.sensors.heading_lag),
+            (None, Solver::Automatic) => {
+                ship_in_weather::largest_step(dynamics.largest_step(), self.sensors.heading_lag)
+            }
         };
         let display = self.helmsman.reads_display_every.map_or(0.0, |period| 1.0 / period);
-        let weather = if self.disturbances.are_time_dependent() { 1.0 / self.weather_grid } else { 0.0 };
+        let weather = if self.disturbances.are_time_dependent() { 1.0 / self.weather_cell_width } else { 0.0 };
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
         let declared = self.disturbances.waves.map(|waves| waves.process());
         let seas = declared.iter().chain(self.ship.random_headings()).map(sea).sum::<f64>();

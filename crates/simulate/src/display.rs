@@ -3,9 +3,9 @@
 
 use rand::rngs::ChaCha8Rng;
 
+use crate::compass_error::{CompassErrorPath, CompassErrorPoint, CompassReader};
 use crate::sensor::{Sensors, quantise};
 use crate::stream::{RngPurpose, StreamKey, normal};
-use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
 /// Tolerance at the heading of the next execute, rad: a multiple of the quantum can be below it by a rounding error.
@@ -24,8 +24,8 @@ pub(crate) struct DisplayReading {
 
 impl DisplayReading {
     /// Coloured error at the time of the reading.
-    pub fn wander_point(&self) -> WanderPoint {
-        WanderPoint { time: self.time, error: self.wander }
+    pub fn compass_error_point(&self) -> CompassErrorPoint {
+        CompassErrorPoint { time: self.time, error: self.wander }
     }
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct HeadingDisplay {
     base: f64,
     sensors: Sensors,
     waves: SeaWaves,
-    wander: Option<WanderPath>,
+    wander: Option<CompassErrorPath>,
     rng: ChaCha8Rng,
     log: Vec<DisplayReading>,
 }
@@ -46,7 +46,7 @@ impl HeadingDisplay {
     /// Display with a reading every `period` s; the base course is the noise-free reading at `heading`.
     pub fn new(period: f64, sensors: Sensors, waves: SeaWaves, key: &StreamKey, heading: f64) -> Self {
         let base = quantise(heading + sensors.heading_bias, sensors.heading_quantum);
-        let wander = sensors.heading_wander.map(|process| WanderPath::new(process, CompassReader::Display, key));
+        let wander = sensors.heading_wander.map(|process| CompassErrorPath::new(process, CompassReader::Display, key));
         let (rng, log) = (key.rng(RngPurpose::Display), Vec::with_capacity(1024));
         Self { period, next: 0, base, sensors, waves, wander, rng, log }
     }

@@ -36,9 +36,9 @@ pub enum Requirement {
     },
     /// Number of an execute, up to the number of the last execute.
     Execute(usize),
-    /// Presence that depends on another key: given value, expected value and advice.
+    /// Presence that depends on another key: messages of the problem, the expectation and the advice.
     OtherKey([&'static str; 3]),
-    /// Value that depends on another value: given value, expected value and advice.
+    /// Value that depends on another value: messages of the problem, the expectation and the advice.
     OtherValue([&'static str; 3]),
 }
 
@@ -87,7 +87,7 @@ impl SpecificationError {
         matches!(self.expected, Requirement::OtherKey(_)) || self.key == "vessel.dead_time"
     }
 
-    /// Message in the units of a scenario: given value, expected value and advice.
+    /// Message in the units of a scenario, as its parts: problem, expectation and advice.
     pub fn message_parts(&self) -> [String; 3] {
         let Self { key, value, expected } = *self;
         let problem = match expected {

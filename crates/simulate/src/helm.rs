@@ -48,7 +48,7 @@ pub struct HelmOrder {
     pub order: f64,
 }
 
-/// State of one manoeuvre in one run.
+/// State of one manoeuvre in one run: orders given, next trigger and end.
 #[derive(Debug, Clone)]
 pub struct Helm<'a> {
     manoeuvre: &'a Manoeuvre,
@@ -88,7 +88,8 @@ impl<'a> Helm<'a> {
         }
     }
 
-    /// Rudder order, rad, by the trigger at time `t` (s); `None` if no order is given at this time.
+    /// Processes the trigger that occurs at time `t` (s) and returns the rudder order, rad; `None` if no order is given
+    /// at this time, because of the reaction time or at the end of the manoeuvre.
     pub fn act(&mut self, t: f64) -> Option<f64> {
         let is_heading_dependent = matches!(self.trigger(), Trigger::Deviation { .. });
         let Some(order) = self.manoeuvre.step(self.orders).order else {

@@ -36,6 +36,7 @@
 //! The types of a specification are the types of a scenario file, which has degrees, and units in the keys. In memory,
 //! time is in seconds from the beginning of the run, and all quantities are in SI units and radians.
 
+mod compass_error;
 mod display;
 mod manoeuvre;
 mod measure;
@@ -46,7 +47,6 @@ mod run;
 mod sample;
 #[cfg(test)]
 mod tests;
-mod wander;
 mod wave_path;
 mod weather;
 
@@ -73,6 +73,6 @@ pub use prepared::PreparedSimulation;
 pub use recording::Recording;
 pub use sensor::Sensors;
 pub use simulated_ship::{SimulatedShip, Solver};
-pub use simulation::{BeforeExecute, SimulatedTrial, Simulation, Truth};
+pub use simulation::{Approach, SimulatedTrial, Simulation, Truth};
 pub use stream::{RngPurpose, StreamKey};
 pub use trial::{Manoeuvre, Side};

@@ -1,7 +1,7 @@
 //! Limits of a run, so that no random or mistyped specification runs without end or exhausts the memory. The cost of a
 //! run is estimated in [`crate::cost`].
 
-/// Maximum time in a specification, s: four months. At longer times the resolution of f64 is coarser than a nanosecond.
+/// Maximum time in a specification, s: four months. The resolution of f64 is 2 ns at this time.
 pub const MAX_TIME_S: f64 = 1e7;
 
 /// Maximum number of steps of one run: a minute or two of computing. A zig-zag has some thousand steps.

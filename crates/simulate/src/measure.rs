@@ -10,6 +10,7 @@ use rand::rngs::ChaCha8Rng;
 use ship::Particulars;
 use trial::{Channel, Columns};
 
+use crate::compass_error::{CompassErrorPath, CompassErrorPoint, CompassReader};
 use crate::display::DisplayReading;
 use crate::disturbance::{Wind, gusting_speed};
 use crate::gear::RudderPath;
@@ -18,7 +19,6 @@ use crate::run::RunResult;
 use crate::sample::Sample;
 use crate::sensor::{DropOut, Sensors, quantise};
 use crate::stream::{RngPurpose, StreamKey, normal, uniform};
-use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
 /// Tolerance, s, for equal instants.
@@ -35,7 +35,7 @@ pub(crate) struct TrueRunView<'a> {
     /// Rudder path reconstructed from the orders; `None` if the rudder feedback is recorded.
     pub assumed: Option<&'a RudderPath>,
     /// Rudder order before the first execute, rad; `None` if there is no order.
-    pub first_order: Option<f64>,
+    pub approach_order: Option<f64>,
     /// Wind; `None` in a calm.
     pub wind: Option<Wind>,
     /// Length and approach speed of the ship; `None` if unknown.
@@ -53,8 +53,9 @@ pub(crate) struct PerfectReadings {
     gyro: Vec<f64>,
     /// Yaw rate, rad/s.
     yaw_rate: Vec<f64>,
-    /// Recorded rudder, rad, and `true` if an instrument measures it.
+    /// Recorded rudder, rad.
     rudder: Vec<f64>,
+    /// `true` if an instrument measures the rudder, `false` if it is reconstructed from the orders.
     rudder_is_read: bool,
     /// Channels without instrument errors.
     exact: Vec<(Channel, Vec<f64>)>,
@@ -62,16 +63,16 @@ pub(crate) struct PerfectReadings {
     readings: Vec<DisplayReading>,
 }
 
-/// Record as columns, with the kept rows.
+/// Record as columns without the lost rows, and the flags of the kept rows.
 pub(crate) struct WrittenRows {
     pub columns: Columns,
-    /// For every row, `true` if it is kept; `None` if all are kept.
+    /// For every row before drop-outs, `true` if it is kept; `None` if all are kept.
     pub kept: Option<Vec<bool>>,
 }
 
 impl PerfectReadings {
     /// `true` if the records of all keys have the same times and the same rudder.
-    pub fn has_one_rudder(&self, sensors: &Sensors) -> bool {
+    pub fn has_common_rudder(&self, sensors: &Sensors) -> bool {
         let is_disturbed = self.rudder_is_read && sensors.rudder_noise > 0.0;
         let loses_rows = sensors.drop_out.whole_row && sensors.drop_out.can_lose_rows();
         !(is_disturbed || loses_rows)
@@ -88,7 +89,7 @@ impl PerfectReadings {
             Some(path) => path.angles_at(stamps.iter().copied()),
         };
         let mut exact = Vec::new();
-        if let Some(first) = view.first_order {
+        if let Some(first) = view.approach_order {
             let order = |(row, &stamp): (usize, &f64)| order_at(&view.run.executes, first, stamp + jitter(row));
             exact.push((Channel::RudderOrder, rows().map(order).collect()));
         }
@@ -109,20 +110,20 @@ impl PerfectReadings {
     }
 }
 
-/// Record of the readings `scene` with the random errors of `key`.
+/// Record of `perfect_readings` with the random errors of `key`.
 pub(crate) fn with_sensor_errors(
     sensors: &Sensors,
-    scene: &PerfectReadings,
+    perfect_readings: &PerfectReadings,
     waves: SeaWaves,
     key: &StreamKey,
 ) -> WrittenRows {
-    let mut rudder = scene.rudder.clone();
-    if scene.rudder_is_read {
+    let mut rudder = perfect_readings.rudder.clone();
+    if perfect_readings.rudder_is_read {
         disturb(&mut rudder, sensors.rudder_noise, key.rng(RngPurpose::Rudder));
         quantise_all(&mut rudder, sensors.rudder_quantum);
     }
-    let (channels, kept) = channels_with_errors(sensors, scene, waves, key);
-    let mut columns = Columns { time: scene.stamps.clone(), channels, unknown: Vec::new() };
+    let (channels, kept) = channels_with_errors(sensors, perfect_readings, waves, key);
+    let mut columns = Columns { time: perfect_readings.stamps.clone(), channels, unknown: Vec::new() };
     columns.channels.insert(Channel::Rudder, rudder);
     if let Some(kept) = &kept {
         retain_flagged(&mut columns.time, kept);
@@ -131,21 +132,21 @@ pub(crate) fn with_sensor_errors(
     WrittenRows { columns, kept }
 }
 
-/// Channels of the readings `scene`, all but the rudder, with the random errors of `key`, and the flags of
+/// Channels of `perfect_readings`, all but the rudder, with the random errors of `key`, and the flags of
 /// [`WrittenRows`].
 pub(crate) fn channels_with_errors(
     sensors: &Sensors,
-    scene: &PerfectReadings,
+    perfect_readings: &PerfectReadings,
     waves: SeaWaves,
     key: &StreamKey,
 ) -> (BTreeMap<Channel, Vec<f64>>, Option<Vec<bool>>) {
-    let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
-    let mut channels: BTreeMap<Channel, Vec<f64>> = scene.exact.iter().cloned().collect();
+    let (mut heading, yaw_rate) = compass_and_rate(sensors, perfect_readings, waves, key);
+    let mut channels: BTreeMap<Channel, Vec<f64>> = perfect_readings.exact.iter().cloned().collect();
     if let Some(yaw_rate) = yaw_rate {
         channels.insert(Channel::YawRate, yaw_rate);
     }
 
-    let lost = lost_rows(&sensors.drop_out, scene.stamps.len(), key);
+    let lost = lost_rows(&sensors.drop_out, perfect_readings.stamps.len(), key);
     let mut kept: Option<Vec<bool>> = None;
     if let Some(lost) = lost {
         if sensors.drop_out.whole_row {
@@ -166,7 +167,7 @@ pub(crate) fn retain_flagged<T>(values: &mut Vec<T>, kept: &[bool]) {
     values.retain(|_| *rows.next().unwrap_or(&false));
 }
 
-/// Addition of white noise of standard deviation `sd`; for `sd` = 0 no random numbers are used.
+/// Adds white noise of standard deviation `sd`, in the unit of the column; for `sd` = 0 no random numbers are used.
 fn disturb(column: &mut [f64], sd: f64, mut rng: ChaCha8Rng) {
     if sd > 0.0 {
         column.iter_mut().for_each(|x| *x += sd * normal(&mut rng));
@@ -181,14 +182,16 @@ fn quantise_all(column: &mut [f64], quantum: f64) {
 
 fn compass_and_rate(
     sensors: &Sensors,
-    scene: &PerfectReadings,
+    perfect_readings: &PerfectReadings,
     mut waves: SeaWaves,
     key: &StreamKey,
 ) -> (Vec<f64>, Option<Vec<f64>>) {
-    let (mut heading, mut yaw_rate) =
-        (scene.gyro.clone(), sensors.has_rate_of_turn_indicator().then(|| scene.yaw_rate.clone()));
+    let (mut heading, mut yaw_rate) = (
+        perfect_readings.gyro.clone(),
+        sensors.has_rate_of_turn_indicator().then(|| perfect_readings.yaw_rate.clone()),
+    );
     if !waves.is_empty() {
-        for (row, &instant) in scene.instants.iter().enumerate() {
+        for (row, &instant) in perfect_readings.instants.iter().enumerate() {
             let [wave, wave_rate] = waves.heading_and_rate_at(instant);
             heading[row] += wave;
             yaw_rate.iter_mut().for_each(|yaw_rate| yaw_rate[row] += wave_rate);
@@ -196,16 +199,18 @@ fn compass_and_rate(
     }
     heading.iter_mut().for_each(|psi| *psi += sensors.heading_bias);
     if let Some(process) = sensors.heading_wander {
-        let points: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::wander_point).collect();
-        let errors = WanderPath::new(process, CompassReader::Record, key).errors_at(&scene.instants, &points);
+        let points: Vec<CompassErrorPoint> =
+            perfect_readings.readings.iter().map(DisplayReading::compass_error_point).collect();
+        let errors =
+            CompassErrorPath::new(process, CompassReader::Record, key).errors_at(&perfect_readings.instants, &points);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }
     // Sampled in every row, used or not, so that readings of the helmsman do not change later random numbers.
     disturb(&mut heading, sensors.heading_noise, key.rng(RngPurpose::Heading));
     quantise_all(&mut heading, sensors.heading_quantum);
-    if !scene.readings.is_empty() {
-        for (psi, &instant) in heading.iter_mut().zip(&scene.instants) {
-            if let Some(reading) = reading_at(&scene.readings, instant) {
+    if !perfect_readings.readings.is_empty() {
+        for (psi, &instant) in heading.iter_mut().zip(&perfect_readings.instants) {
+            if let Some(reading) = reading_at(&perfect_readings.readings, instant) {
                 *psi = reading.heading;
             }
         }
@@ -220,7 +225,7 @@ fn compass_and_rate(
     (heading, yaw_rate)
 }
 
-/// Faults between compass and record: spikes, and rows without a heading.
+/// Adds the faults between compass and record to a heading (rad): spikes, and rows without a heading (NaN).
 fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
     if let Some(spikes) = sensors.heading_spikes {
         let mut rng = key.rng(RngPurpose::HeadingSpikes);

@@ -27,21 +27,21 @@ impl PreparedSimulation {
     /// Fails if [`Simulation::run`] fails.
     pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
         simulation.check()?;
-        let true_run = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
-        let shared = true_run.as_ref().filter(|run| run.scene.has_one_rudder(&simulation.sensors));
+        let true_run = simulation.is_repeatable().then(|| simulation.true_run(&StreamKey::default())).transpose()?;
+        let shared = true_run.as_ref().filter(|run| run.perfect_readings.has_common_rudder(&simulation.sensors));
         let first = shared.and_then(|run| Some(simulation.record(run, &StreamKey::default()).ok()?.trial));
         Ok(Self { simulation, true_run, first })
     }
 
-    /// Trial of `key`.
+    /// Simulated trial of `key`: record and truth.
     ///
     /// Fails if [`Simulation::run`] fails.
     pub fn run(&self, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         let Self { simulation, true_run, first } = self;
-        let Some(true_run) = true_run else { return simulation.record(&simulation.sail(key)?, key) };
+        let Some(true_run) = true_run else { return simulation.record(&simulation.true_run(key)?, key) };
         let Some(first) = first else { return simulation.record(true_run, key) };
         let waves = SeaWaves::new(&simulation.disturbances, &simulation.ship, key);
-        let (channels, _) = measure::channels_with_errors(&simulation.sensors, &true_run.scene, waves, key);
+        let (channels, _) = measure::channels_with_errors(&simulation.sensors, &true_run.perfect_readings, waves, key);
         let (name, origin) = simulation.name_and_origin(key);
         let trial = simulation.with_declarations(first.with_same_rudder(name, origin, channels)?);
         Ok(SimulatedTrial { trial, truth: Arc::clone(&true_run.truth) })

@@ -21,7 +21,7 @@ const END_TOLERANCE: f64 = 1e-9;
 pub(crate) enum RunEvent {
     /// Requested time.
     Reached,
-    /// Execute; it is the last in the list.
+    /// Execute, which is the last in the list of executes.
     Executed,
     /// End of the manoeuvre.
     Over,
@@ -65,7 +65,7 @@ impl<'a, P: Propagator> Run<'a, P> {
         Self { propagator, path, gear, helm, display, base, executes, longest_wait, steps: 0 }
     }
 
-    /// Time, s.
+    /// Current time of the run, s.
     pub fn time(&self) -> f64 {
         self.propagator.time()
     }

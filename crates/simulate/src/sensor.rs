@@ -9,7 +9,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
-use trial::Noise;
+use trial::SensorNoise;
 use trial::degrees::Degrees;
 
 use crate::disturbance::GaussMarkov;
@@ -141,18 +141,18 @@ impl Sensors {
         self.drop_out.check()
     }
 
-    /// Declared noise: the standard deviation of white noise and quantisation (q/√12) together; `None` if both are
-    /// zero. Waves, lag, bias, coloured errors and spikes are not declared, because a standard deviation does not
-    /// describe them.
-    pub fn declared_noise(&self) -> Noise {
+    /// Declared noise of every channel, rad or rad/s: the standard deviation of white noise and quantisation (q/√12)
+    /// together; `None` if both are zero. Waves, lag, bias, coloured errors and spikes are not declared, because a
+    /// standard deviation does not describe them.
+    pub fn declared_noise(&self) -> SensorNoise {
         let total = |noise: f64, quantum: f64| {
             let sd = noise.hypot(quantum / 12.0_f64.sqrt());
             (sd > 0.0).then_some(sd)
         };
-        Noise {
-            heading: total(self.heading_noise, self.heading_quantum),
-            yaw_rate: self.yaw_rate_noise.and_then(|noise| total(noise, 0.0)),
-            rudder: total(self.rudder_noise, self.rudder_quantum),
+        SensorNoise {
+            heading_sd: total(self.heading_noise, self.heading_quantum),
+            yaw_rate_sd: self.yaw_rate_noise.and_then(|noise| total(noise, 0.0)),
+            rudder_sd: total(self.rudder_noise, self.rudder_quantum),
         }
     }
 }

@@ -32,7 +32,8 @@ use crate::weather::{DEFAULT_CELL_S, Weather};
 /// Approach of the ship to the first execute.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct BeforeExecute {
+#[schemars(rename = "BeforeExecute")]
+pub struct Approach {
     /// Heading at the beginning of the run: the base course.
     #[serde(rename = "heading-deg", with = "Degrees::<f64>")]
     pub heading: f64,
@@ -48,7 +49,7 @@ pub struct BeforeExecute {
     pub lead_in: f64,
 }
 
-impl BeforeExecute {
+impl Approach {
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
         error::check_finite("approach.heading-deg", self.heading)?;
@@ -82,7 +83,7 @@ pub struct Simulation {
     /// Ship.
     pub ship: SimulatedShip,
     /// Approach to the first execute.
-    pub approach: BeforeExecute,
+    pub approach: Approach,
     /// Manoeuvre.
     pub manoeuvre: Manoeuvre,
     /// Helmsman.
@@ -99,7 +100,7 @@ pub struct Simulation {
     pub solver: Solver,
     /// Cell width of the weather, s; the weather is linear within a cell. It must be short against every correlation
     /// time of the weather and every time constant of the ship.
-    pub weather_grid: f64,
+    pub weather_cell_width: f64,
     /// Maximum wait for a heading after an execute, s; a run that exceeds it fails.
     pub longest_wait: f64,
 }
@@ -138,7 +139,7 @@ pub struct SimulatedTrial {
 /// True run without the random errors of the record.
 #[derive(Debug, Clone)]
 pub(crate) struct TrueRun {
-    pub scene: PerfectReadings,
+    pub perfect_readings: PerfectReadings,
     pub truth: Arc<Truth>,
 }
 
@@ -157,7 +158,7 @@ impl Simulation {
         Self {
             scenario_name: String::from("simulation"),
             ship,
-            approach: BeforeExecute::default(),
+            approach: Approach::default(),
             manoeuvre,
             helmsman: Helmsman::default(),
             gear: SteeringGear::default(),
@@ -165,7 +166,7 @@ impl Simulation {
             sensors: Sensors::default(),
             recording: Recording::default(),
             solver: Solver::default(),
-            weather_grid: DEFAULT_CELL_S,
+            weather_cell_width: DEFAULT_CELL_S,
             longest_wait: MAX_WAIT_S,
         }
     }
@@ -180,7 +181,7 @@ impl Simulation {
         self.recording.check()?;
         self.approach.check()?;
         error::check_positive_time("longest_wait", self.longest_wait)?;
-        error::check_between("weather_grid", self.weather_grid, MIN_STEP_S, MAX_STEP_S)?;
+        error::check_between("weather_cell_width", self.weather_cell_width, MIN_STEP_S, MAX_STEP_S)?;
         if let Solver::RungeKutta(step) = self.solver {
             error::check_between("solver.step", step, MIN_STEP_S, MAX_STEP_S)?;
         }
@@ -231,13 +232,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Trial of `key`.
+    /// Simulated trial of `key`: record and truth.
     ///
     /// Fails if the specification is invalid or too costly, the motion diverges, a heading is never reached, the record
     /// starts at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         self.check()?;
-        self.record(&self.sail(key)?, key)
+        self.record(&self.true_run(key)?, key)
     }
 
     /// `true` if no random input acts on ship, helmsman or the instants of the rows.
@@ -252,9 +253,9 @@ impl Simulation {
 
     /// True run from the beginning to the end of the record. Fails for the reasons of [`run`](Self::run), except an
     /// invalid specification.
-    pub(crate) fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
+    pub(crate) fn true_run(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
-        let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
+        let weather = || Weather::new(&self.disturbances, self.weather_cell_width, key);
         match self.closed_form() {
             Some(ship) => self.drive(key, || ClosedForm::new(ship, weather(), approach, self.recording.period)),
             None => {
@@ -264,8 +265,8 @@ impl Simulation {
                 };
                 let (ship, wind, lag) = (self.ship.dynamics(), self.disturbances.wind, self.sensors.heading_lag);
                 let speed = self.ship.particulars().map(|particulars| particulars.speed);
-                let exposed = || ShipInWeather::new(ship, wind, speed, lag, weather());
-                self.drive(key, || Integrated::new(exposed(), approach, step))
+                let ship_in_weather = || ShipInWeather::new(ship, wind, speed, lag, weather());
+                self.drive(key, || Integrated::new(ship_in_weather(), approach, step))
             }
         }
     }
@@ -279,7 +280,7 @@ impl Simulation {
     }
 
     fn begin<P: Propagator>(&self, key: &StreamKey, propagator: P) -> Run<'_, P> {
-        let BeforeExecute { heading, rudder, lead_in, .. } = self.approach;
+        let Approach { heading, rudder, lead_in, .. } = self.approach;
         let path = match &self.manoeuvre {
             Manoeuvre::Replay { rudder: Some(signal), .. } => RudderPath::from_signal(rudder, lead_in, signal),
             _ => RudderPath::constant(rudder),
@@ -354,17 +355,17 @@ impl Simulation {
             jitter: instruments.as_ref().map_or(&[], |sampler| &sampler.jitter),
             run,
             assumed: assumed.as_ref(),
-            first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay { .. })).then_some(self.approach.rudder),
+            approach_order: (!matches!(self.manoeuvre, Manoeuvre::Replay { .. })).then_some(self.approach.rudder),
             wind: self.disturbances.wind,
             particulars: self.ship.particulars(),
         };
-        TrueRun { scene: PerfectReadings::new(truth.time.clone(), &view), truth: Arc::new(truth) }
+        TrueRun { perfect_readings: PerfectReadings::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
     /// Record of a run with the random errors of `key`.
     pub(crate) fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<SimulatedTrial, SimulateError> {
         let waves = SeaWaves::new(&self.disturbances, &self.ship, key);
-        let written = measure::with_sensor_errors(&self.sensors, &true_run.scene, waves, key);
+        let written = measure::with_sensor_errors(&self.sensors, &true_run.perfect_readings, waves, key);
         let truth = match &written.kept {
             None => Arc::clone(&true_run.truth),
             Some(kept) => Arc::new(true_run.truth.keep(kept)),
@@ -380,7 +381,7 @@ impl Simulation {
         (format!("{}-{cell}-{replicate}", self.scenario_name), origin)
     }
 
-    /// The same record with the declared noise, weather and particulars.
+    /// Record with the declared noise, weather and particulars.
     pub(crate) fn with_declarations(&self, trial: Trial) -> Trial {
         let conditions = DeclaredConditions { weather: self.recording.weather, ..DeclaredConditions::default() };
         let trial = trial.with_noise(self.sensors.declared_noise()).with_conditions(conditions);

@@ -88,8 +88,8 @@ impl StreamKey {
 
     /// Generator for one of several sources with the same purpose, at its beginning.
     pub fn indexed_rng(&self, purpose: RngPurpose, index: u32) -> ChaCha8Rng {
-        // The 256-bit key of the cipher is the concatenation of seed, cell and replicate; the stream number contains
-        // purpose and index. No hash is used, so no two streams coincide.
+        // The 256-bit key of the cipher is the concatenation of seed, cell and replicate, followed by zeros; the stream
+        // number contains purpose and index. No hash is used, so no two streams coincide.
         let mut key = [0; 32];
         for (bytes, number) in key.chunks_exact_mut(8).zip([self.seed, self.cell, self.replicate]) {
             bytes.copy_from_slice(&number.to_le_bytes());

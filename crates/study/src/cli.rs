@@ -90,7 +90,7 @@ impl<R: Args> With<R> {
         run(&self.request, &self.common)
     }
 
-    /// Runs a command that works on several threads.
+    /// Starts the threads and runs a command that works on them. Fails if the system refuses the threads.
     fn work(&self, run: impl FnOnce(&R, &CommonOptions) -> Result<(), Failure>) -> Result<(), Failure> {
         threads::start(&self.common)?;
         run(&self.request, &self.common)
@@ -134,12 +134,12 @@ fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
             usage.exit()
         }
         _ if failures::uses_json() => usage_failure(&usage),
-        // Through the same writer as all other messages, because an argument may hold control characters.
+        // An argument may hold control characters, which the writer of all other messages escapes.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })
 }
 
-/// Message of a usage error, without the usage text.
+/// Failure for a usage error: its message without the usage text.
 pub fn usage_failure(usage: &clap::Error) -> Failure {
     let message = usage.to_string();
     let (message, _) = message.split_once("\n\nUsage:").unwrap_or((&message, ""));
@@ -147,7 +147,7 @@ pub fn usage_failure(usage: &clap::Error) -> Failure {
     Failure::input(message.trim().trim_start_matches("error: ")).with_code(ErrorCode::Usage)
 }
 
-/// First argument if it is a word that is neither a command nor an existing path: a mistyped command.
+/// First argument if it is a mistyped command: a word that is neither a command nor an existing path; else `None`.
 fn mistaken_command(first: Option<&OsString>) -> Option<String> {
     let name = first?.clone().into_string().ok()?;
     let is_word = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');

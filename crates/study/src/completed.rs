@@ -8,8 +8,8 @@ use clap::{Arg, Command, Error};
 use identify::registry;
 use std::ffi::OsStr;
 
-/// Value of `--method` for all methods.
-pub const ALL: &str = "all";
+/// Value of `--method` that selects all methods.
+pub const ALL_METHODS: &str = "all";
 
 /// Parser with values for completion. The parser alone decides which values are valid.
 #[derive(Clone)]
@@ -18,7 +18,7 @@ pub struct Completed<P> {
     values: fn() -> Vec<String>,
 }
 
-/// Parser `parser` with some valid `values` for completion.
+/// The `parser`, with `values` that a shell completes.
 pub fn completed<P: TypedValueParser>(parser: P, values: fn() -> Vec<String>) -> Completed<P> {
     Completed { parser, values }
 }
@@ -41,9 +41,9 @@ pub fn method_names() -> Vec<String> {
     built.map(|method| method.id().to_owned()).collect()
 }
 
-/// Ids of [`method_names`], and [`ALL`].
+/// Ids of [`method_names`], and [`ALL_METHODS`].
 pub fn method_names_or_all() -> Vec<String> {
-    method_names().into_iter().chain([String::from(ALL)]).collect()
+    method_names().into_iter().chain([String::from(ALL_METHODS)]).collect()
 }
 
 /// Ids of the methods of a scenario: those of [`method_names`], a trace, and the straight-on forecast.

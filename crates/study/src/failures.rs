@@ -23,9 +23,9 @@ pub fn uses_json() -> bool {
 
 /// Writes a failure to standard error, as text or as one line of JSON; returns the exit code of the program.
 pub fn report_failure(failure: &Failure) -> u8 {
-    match error::text(failure) {
+    match error::to_json_line(failure) {
         Ok(document) if uses_json() => drop(writeln!(std::io::stderr().lock(), "{document}")),
-        _ => screen::warn(&failure.to_string()),
+        _ => screen::print_to_stderr(&failure.to_string()),
     }
     screen::exit_code(failure.kind)
 }

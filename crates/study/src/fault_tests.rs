@@ -43,7 +43,7 @@ fn quiet(out: Option<&Path>) -> CommonOptions {
 /// One small figure, which takes little time.
 const STYLE: StudyFigureOptions = StudyFigureOptions {
     style: FigureOptions { paper: Some(60.0), dpi: 72.0, style: None },
-    figures: FigureChoice::Hero,
+    figures: FigureChoice::Key,
 };
 
 fn report_of(folder: &Path) -> ReportRequest {
@@ -151,7 +151,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_report() {
     assert!(fail_each(Some(&whole), |folder| report::run(&report_of(folder), &quiet(None))) > 50);
 }
 
-/// Every operation of merging blocks computed elsewhere fails once.
+/// Every file operation fails once while the blocks of shards are merged into a study.
 #[test]
 fn no_fault_of_the_disk_loses_anything_of_shards() {
     let desk = tempfile::tempdir().expect("a temporary folder");

@@ -18,7 +18,7 @@ impl Formulas {
     }
 }
 
-/// Effect read from `NAME = FORMULA`.
+/// Effect read from `NAME = FORMULA`. Fails if the line is no such formula.
 pub fn formula(line: &str) -> Result<Arc<Formula>, String> {
     ship::effects::parse_formula(line).map_err(|error| error.to_string())
 }

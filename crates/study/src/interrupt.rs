@@ -34,7 +34,7 @@ pub fn set_graceful_stop(is_request: bool) {
     LISTENING.store(is_request, Ordering::SeqCst);
 }
 
-/// `true` if Ctrl-C has requested a stop.
+/// `true` after the first interruption, a request to stop between two trials.
 pub fn is_stop_requested() -> bool {
     ASKED.load(Ordering::Relaxed)
 }

@@ -1,5 +1,5 @@
-//! The command line `study`: options, the crates that compute each command, and the form of the output. No
-//! hydrodynamics here.
+//! Library of the command line `study`: options, the work of each command, and the form of the output. Hydrodynamics,
+//! identification and statistics are in the crates below.
 //!
 //! | to learn about | read |
 //! |---|---|

@@ -118,7 +118,7 @@ pub struct ReadingOptions {
     pub ship: ShipOptions,
     /// Known particulars of the trial
     #[command(flatten)]
-    pub of_trial: TrialOptions,
+    pub trial_particulars: TrialOptions,
 }
 
 /// Options for samples of an estimate as a file.
@@ -133,7 +133,7 @@ pub struct SampleFileOptions {
     pub draws: u32,
 }
 
-/// Time in a record.
+/// Time in a record, as given on the command line.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TimePoint {
     /// Seconds on the clock of the record.
@@ -319,7 +319,7 @@ fn rule(name: &str) -> Result<WeightingRule, String> {
     WeightingRule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &names))
 }
 
-/// Effect of this name; `option` is the option in which it was given.
+/// Effect of this name. Fails if there is none; the message names the `option` in which it was given.
 fn effect(option: &str, name: &str, selection: &Selection) -> Result<EffectId, Failure> {
     selection.find(name).ok_or_else(|| {
         let ids: Vec<&str> = selection.ids().into_iter().map(EffectId::as_str).collect();

@@ -9,7 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::screen;
 
-/// Progress bar over `length` steps; removed at the end of the work.
+/// Progress bar over `length` steps, removed at the end of the work; hidden if `quiet`, or if standard error is no
+/// terminal.
 pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
@@ -25,7 +26,7 @@ pub fn bar(label: &str, length: u64, quiet: bool) -> ProgressBar {
 }
 
 /// Spinner on standard error for work of unknown length; hidden under the same conditions as a bar.
-pub fn busy(label: &'static str, quiet: bool) -> ProgressBar {
+pub fn spinner(label: &'static str, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
@@ -46,13 +47,13 @@ pub struct ProgressSteps {
     bar: ProgressBar,
     label: &'static str,
     /// Number of steps that remained at the beginning.
-    most: u64,
+    remaining_steps: u64,
     /// Number of these that are finished.
     done: AtomicU64,
     side_by_side: usize,
     begin: Instant,
     /// `true` if the forecast has been printed, or is not to be printed.
-    is_told: AtomicBool,
+    is_forecast_done: AtomicBool,
 }
 
 impl ProgressSteps {
@@ -61,11 +62,11 @@ impl ProgressSteps {
         Self {
             bar: bar(label, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
             label,
-            most: most.saturating_sub(done),
+            remaining_steps: most.saturating_sub(done),
             done: AtomicU64::new(0),
             side_by_side,
             begin: Instant::now(),
-            is_told: AtomicBool::new(quiet || std::io::stderr().is_terminal()),
+            is_forecast_done: AtomicBool::new(quiet || std::io::stderr().is_terminal()),
         }
     }
 
@@ -73,10 +74,10 @@ impl ProgressSteps {
     pub fn advance(&self) {
         self.bar.inc(1);
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
-        if elapsed >= MIN_ELAPSED && !self.is_told.swap(true, Ordering::Relaxed) {
+        if elapsed >= MIN_ELAPSED && !self.is_forecast_done.swap(true, Ordering::Relaxed) {
             // Steps that run at the same time finish at about the same time as the first.
-            let line = forecast(self.label, self.most, done.max(self.side_by_side as u64), elapsed);
-            line.iter().for_each(|line| screen::warn(line));
+            let line = forecast(self.label, self.remaining_steps, done.max(self.side_by_side as u64), elapsed);
+            line.iter().for_each(|line| screen::print_to_stderr(line));
         }
     }
 

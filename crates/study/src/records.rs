@@ -13,7 +13,7 @@ use trial::{Channel, Log, ReadError, ReadRecord, RecordOrigin, Sidecar, SidecarE
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::failure::{Failure, FailureParts, OnPath};
-use campaign::identified_ship::MethodIndependentResults;
+use campaign::identified_ship::RecordFacts;
 use campaign::outside_estimates::TRIALS_FILE;
 use campaign::scenario::name;
 
@@ -23,7 +23,7 @@ const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "
 /// Files of the given paths. A folder means all its records, in the order of their names, and `-` means standard input.
 ///
 /// Fails if a folder has no record, or if standard input is to be read twice.
-pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+pub fn record_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if paths.iter().filter(|path| *path == Path::new(STDIN)).count() > 1 {
         return Err(Failure::input("- is given twice, but standard input holds one record; give files for the others"));
     }
@@ -56,11 +56,16 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Log of a file; adds the `warnings` of the reader. `columns` is a description of its columns, or a folder with such a
-/// description; the channels of `parts` are joined with the log.
+/// Log of a file, joined with the channels of the files `parts`. `columns` is a description of its columns (a sidecar),
+/// or a folder with such a description. Adds the warnings of the reader to `warnings`.
 ///
 /// Fails if the file is not a log, or if no results can be named after it.
-pub fn open(path: &Path, columns: Option<&Path>, parts: &[PathBuf], warnings: &mut Warnings) -> Result<Log, Failure> {
+pub fn open_log(
+    path: &Path,
+    columns: Option<&Path>,
+    parts: &[PathBuf],
+    warnings: &mut Warnings,
+) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
         return Err(Failure::input(format!(
@@ -82,7 +87,7 @@ pub fn warning_source(path: &Path) -> WarningSource {
     WarningSource::Record(path.display().to_string())
 }
 
-/// Failure for a file that is not a record, with file and line as parts.
+/// Failure for a file that is not a usable record, with file, line and code as parts.
 fn refused(error: ReadError) -> Failure {
     let code = error.code();
     let failure = match error {
@@ -101,8 +106,12 @@ fn refused(error: ReadError) -> Failure {
 ///
 /// Fails if a record cannot be read, if a log holds several zig-zags and none is selected, or if an option for one
 /// record is given for several.
-pub fn read_all(paths: &[PathBuf], options: &ReadingOptions, warnings: &mut Warnings) -> Result<Vec<Trial>, Failure> {
-    let files = expand(paths)?;
+pub fn read_records(
+    paths: &[PathBuf],
+    options: &ReadingOptions,
+    warnings: &mut Warnings,
+) -> Result<Vec<Trial>, Failure> {
+    let files = record_files(paths)?;
     let one_only = [
         ("--with-columns", !options.with_columns.is_empty()),
         ("--trial", options.trial.is_some()),
@@ -122,12 +131,12 @@ pub fn read_for_replay(
 ) -> Result<Vec<Trial>, Failure> {
     let (columns, ship) = (options.columns.clone(), options.ship.clone());
     let plain = ReadingOptions { columns, ship, ..ReadingOptions::default() };
-    expand(paths)?.iter().map(|path| read(path, &plain, warnings)).collect()
+    record_files(paths)?.iter().map(|path| read(path, &plain, warnings)).collect()
 }
 
 fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Result<Trial, Failure> {
     trial_from_log(
-        open(path, options.columns.as_deref(), &options.with_columns, warnings)?,
+        open_log(path, options.columns.as_deref(), &options.with_columns, warnings)?,
         display_path(path),
         options,
         warnings,
@@ -168,7 +177,7 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
         conditions.hull = HullParticulars::default();
         (conditions.trial.draught_fore, conditions.trial.draught_aft) = (None, None);
     }
-    conditions.trial = options.of_trial.completed_by(&conditions.trial);
+    conditions.trial = options.trial_particulars.completed_by(&conditions.trial);
     let options = &options.ship.form;
     options.apply(&mut conditions.hull);
     conditions.hull.draught = conditions.hull.draught.or(conditions.trial.mean_draught());
@@ -186,8 +195,8 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
     Ok(trial)
 }
 
-/// Ship, date and draughts of a record, for other programs and the first page.
-pub fn particulars(trial: &Trial) -> TrialParticularsEntry {
+/// Document entry with ship, date and draughts of a record.
+pub fn trial_particulars_entry(trial: &Trial) -> TrialParticularsEntry {
     let (of_trial, hull) = (&trial.conditions().trial, trial.conditions().hull);
     TrialParticularsEntry {
         ship_name: of_trial.ship_name.clone(),
@@ -219,6 +228,8 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
 
 /// Length and approach speed from the options; `None` without a length. A speed that is not given is the median of the
 /// positive speeds in the first tenth of the record, with a warning.
+///
+/// Fails if no speed is given and the record has none there.
 fn ship(
     log: &Log,
     path: &Path,
@@ -240,8 +251,9 @@ fn ship(
     Ok(Some(Particulars { length, speed }))
 }
 
-/// Warning if records with a speed or positions give no track, with the reason.
-pub fn missing_track_warning(shown: &MethodIndependentResults) -> Option<Warning> {
+/// Warning with the reason why records with a speed or positions give no track; `None` if they give one or have
+/// neither.
+pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
     shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 

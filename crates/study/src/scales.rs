@@ -50,7 +50,7 @@ impl RescaledRecords {
     }
 }
 
-/// Length and speed for dimensional results: those of the first record that declares them; `None` if no record does.
-pub fn particulars(trials: &[Trial]) -> Option<Particulars> {
+/// Length and approach speed of the ship, from the first record that declares them; `None` if no record does.
+pub fn declared_particulars(trials: &[Trial]) -> Option<Particulars> {
     trials.iter().find_map(Trial::particulars)
 }

@@ -30,7 +30,7 @@ fn put(text: &str) -> Result<(), Failure> {
 }
 
 /// Writes a line to standard error, with its first word in colour on a terminal. A failure to write is ignored.
-pub fn warn(line: &str) {
+pub fn print_to_stderr(line: &str) {
     let stream = std::io::stderr();
     let line = escaped_lines(line);
     let line = if has_terminal_colours(&stream) { coloured(&line) } else { line };
@@ -79,7 +79,7 @@ pub fn print_output(common: &CommonOptions, output: &CommandOutput, warnings: &[
     let CommandOutput { frame: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
         if !common.quiet {
-            warn(line)
+            print_to_stderr(line)
         }
     };
     match common.format {
@@ -94,17 +94,18 @@ pub fn print_output(common: &CommonOptions, output: &CommandOutput, warnings: &[
             note(notes.trim_start());
         }
     }
-    warn_of(common, warnings);
+    print_warnings(common, warnings);
     Ok(())
 }
 
 /// Writes warnings to standard error, one per line, unless `--quiet` is given.
-pub fn warn_of(common: &CommonOptions, warnings: &[impl Display]) {
+pub fn print_warnings(common: &CommonOptions, warnings: &[impl Display]) {
     let wanted = warnings.iter().filter(|_| !common.quiet);
-    wanted.for_each(|warning| warn(&format!("warning: {warning}")));
+    wanted.for_each(|warning| print_to_stderr(&format!("warning: {warning}")));
 }
 
-/// Writes a document to standard output unchanged: JSON itself escapes control characters.
+/// Writes a text to standard output without escapes, for JSON, which escapes control characters itself, and for
+/// scripts.
 ///
 /// Fails as [`print_lines`] does.
 pub fn print_unescaped(document: &str) -> Result<(), Failure> {
@@ -116,7 +117,7 @@ pub fn escaped_lines(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }
 
-/// Exit code of the program after a failure.
+/// Exit code of the program after a failure: 1 if the work failed, 2 for wrong input, 130 after an interruption.
 pub fn exit_code(blame: FailureKind) -> u8 {
     match blame {
         FailureKind::Work => 1,

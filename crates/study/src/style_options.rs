@@ -70,7 +70,8 @@ pub enum FigureChoice {
     /// All there are
     All,
     /// The key figure of the study, `output.figure`
-    Hero,
+    #[value(name = "hero")]
+    Key,
     /// None
     None,
 }

@@ -16,7 +16,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Observer without a bar yet; `label` names the steps.
+    /// Observer whose bar appears at the beginning of the trials; `label` names their steps.
     pub fn new(label: &'static str, quiet: bool) -> Self {
         Self { quiet, label, steps: OnceLock::new() }
     }
@@ -40,7 +40,7 @@ impl Observer for Terminal {
 
     fn note(&self, line: &str) {
         if !self.quiet {
-            screen::warn(line);
+            screen::print_to_stderr(line);
         }
     }
 

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use ship::{Regressor, Response};
 use trial::{Channel, Trial};
 
-use crate::average::{AveragedModel, ModelAverage};
+use crate::average::{FittedAverage, ModelAverage};
 use crate::base::FittedBase;
 use crate::candidates;
 use crate::comparison::{RecordComparison, ReplayResult, initial_state_guesses, replay_base};
@@ -25,9 +25,10 @@ use crate::fold_observer::{FoldObserver, NoFoldObserver};
 use crate::full::{self, FullModel};
 use crate::hulls;
 use crate::leave_one_out::leave_one_out;
-use crate::location::locate;
+use crate::location::attribute;
 use crate::model::Term;
 use crate::noise::CorrelatedNoise;
+use crate::noise_law::NoiseLaw;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayDepth;
 use crate::report;
@@ -37,7 +38,6 @@ use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::shape::{self, ShapeAnalysis};
 use crate::structures::{self, Structures};
-use crate::weights::NoiseLaw;
 
 /// Result of a trace: document, base, weighted structures, noise law and replays.
 #[derive(Debug, Clone)]
@@ -46,9 +46,9 @@ pub struct Analysis {
     pub document: Document,
     /// First-order response (constant K and T) with the least heading error.
     pub base: Estimate,
-    /// Comparisons on the fitted records.
+    /// Comparison of base and structure average on every fitted record.
     pub identification: Vec<RecordComparison>,
-    /// Comparisons on the held-out records.
+    /// Comparison of base and structure average on every held-out record; empty without held-out records.
     pub validation: Vec<RecordComparison>,
     /// Leave-one-out comparison of every fitted record; `None` if the other records give no base or no finite replay.
     /// Empty unless the analysis is thorough, several records are fitted and none is held out; also empty if stopped.
@@ -65,7 +65,7 @@ pub struct Analysis {
     pub(crate) candidates: Vec<Arc<Term>>,
 }
 
-/// Channels kept by `Settings::uses_heading_alone`.
+/// Channels kept by `Settings::uses_minimal_channels`.
 const COMMON: [Channel; 3] = [Channel::Heading, Channel::Rudder, Channel::YawRate];
 
 /// Records reduced to the channels [`COMMON`].
@@ -91,12 +91,12 @@ pub fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
     let readings: Vec<Vec<f64>> = trials.par_iter().map(spikes).collect();
     let kept = match readings.iter().all(Vec::is_empty) {
         true => Cow::Borrowed(trials),
-        false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
+        false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_headings(out)).collect(),
     };
     (kept, readings)
 }
 
-/// Fails with the reason why a requested effect is no candidate.
+/// Checks that every required effect is a candidate; fails with the reason for the first that is not.
 fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
     let is_there = |id: &&EffectId| candidates.iter().any(|term| term.effect.id() == id.as_str());
     let Some(&effect) = selection.required.iter().find(|id| !is_there(id)) else { return Ok(()) };
@@ -149,7 +149,7 @@ pub fn trace_with_observer(
     observer: &dyn FoldObserver,
 ) -> Result<Analysis, TraceError> {
     settings.check()?;
-    if settings.uses_heading_alone {
+    if settings.uses_minimal_channels {
         return analyse(&of_heading(trials), &of_heading(validation), settings, observer);
     }
     analyse(trials, validation, settings, observer)
@@ -173,12 +173,12 @@ fn analyse(
     let members = structures.members();
     let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
     let (mut identification, mut keeps_base) = compare(&[])?;
-    let location = locate(&problem, &full, &structures, &candidates, settings);
+    let attribution = attribute(&problem, &full, &structures, &candidates, settings);
     let residual_analysis =
-        ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &location, &rudder_noises);
+        ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &attribution, &rudder_noises);
     let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
-    let averaged = AveragedModel { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
+    let averaged = FittedAverage { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
     let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
     let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, observer);
@@ -194,7 +194,7 @@ fn analyse(
         validation: (&validation, &held_out),
         leave_one_out: &leave_one_out,
         residual_analysis: &residual_analysis,
-        location: &location,
+        attribution: &attribution,
         outliers: &outliers,
         rudder_noises: &rudder_noises,
         keeps_base,
@@ -216,7 +216,8 @@ fn analyse(
     })
 }
 
-/// Full model and weighted structures under the most probable noise law.
+/// Full model and weighed structures under the most probable noise law. If all records declare a calm, heading errors
+/// replace a random moment if their structures replay the records better.
 fn weighed(
     problem: &FittedRecords,
     base: &FittedBase,
@@ -236,7 +237,7 @@ fn weighed(
     if !trials.iter().all(Trial::is_calm) || !best.0.law.is_random_moment() {
         return best;
     }
-    // In a calm there is no random yaw moment: heading noise is preferred if its structures replay the records better.
+    // In a calm there is no random yaw moment.
     let of_heading: Vec<CorrelatedNoise> = kinds.into_iter().filter(|kind| kind.is_heading_error()).collect();
     let calm = choose(&of_heading);
     if calm.1.ship_mean_square() < best.1.ship_mean_square() { calm } else { best }
@@ -252,7 +253,7 @@ fn candidates_of(
 ) -> Result<Vec<Arc<Term>>, TraceError> {
     let mut candidates = candidates::all(records, trials, time, &settings.selection);
     refuse_lacking(&candidates, &settings.selection)?;
-    candidates.extend(empirical::candidates(records, trials, time).take(settings.monomials));
+    candidates.extend(empirical::candidates(records, trials, time).take(settings.monomial_count));
     Ok(candidates)
 }
 
@@ -272,7 +273,7 @@ fn compare_fitted(
         let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
-        let averaged = AveragedModel { members, hulls, law, fitted_record: Some(number), time };
+        let averaged = FittedAverage { members, hulls, law, fitted_record: Some(number), time };
         let mut after = averaged.replay_on(trial, &record, &initial_state_guesses(trial, response), depth)?;
         if is_base {
             // No effect is added: keep the closed-form replay of the base.
@@ -304,7 +305,7 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
 /// Structure of the average with weight, response and covariance, without the terms of single records.
 #[derive(Debug, Clone)]
 pub struct PlausibleStructure {
-    /// Probability among the members.
+    /// Probability among the members of the average; the sum over all members is 1.
     pub weight: f64,
     /// Response T r' + r = K (δ + δ_r) with the effects of the structure.
     pub response: Response,
@@ -348,8 +349,8 @@ impl Analysis {
     }
 
     /// Averaged model for a record that was not fitted.
-    fn averaged<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> AveragedModel<'a> {
-        AveragedModel { members, hulls: &self.hulls, law: &self.full.law, fitted_record: None, time: self.problem.time }
+    fn averaged<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> FittedAverage<'a> {
+        FittedAverage { members, hulls: &self.hulls, law: &self.full.law, fitted_record: None, time: self.problem.time }
     }
 
     /// Response of the most probable structure, without the terms of single records; the base if there is no structure.
@@ -366,7 +367,7 @@ impl Analysis {
     pub fn replay_in_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
         let calm = NoiseLaw::white(1, 1e-16);
-        let averaged = AveragedModel { law: &calm, ..self.averaged(&members) };
+        let averaged = FittedAverage { law: &calm, ..self.averaged(&members) };
         averaged.replay_on(trial, &PreparedRecord::unaveraged(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

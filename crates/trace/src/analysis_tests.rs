@@ -39,13 +39,13 @@ fn a_random_moment_is_no_effect_of_the_ship() {
 
 /// A step shows the contribution of one effect: after the damping only noise remains.
 #[test]
-fn a_staircase_leads_from_the_base_to_the_noise() {
+fn an_inclusion_path_leads_from_the_base_to_the_noise() {
     let plan = TrialPlan { noise_deg: 0.1, ..TrialPlan::default() };
     let analysis = traced(&[damped(plan)]);
-    let staircase = analysis.staircase().expect("something is missing");
-    let ids: Vec<Option<&str>> = staircase.steps.iter().map(|step| step.term.map(|(id, ..)| id)).collect();
+    let path = analysis.inclusion_path().expect("something is missing");
+    let ids: Vec<Option<&str>> = path.steps.iter().map(|step| step.term.map(|(id, ..)| id)).collect();
     assert_eq!(ids, [None, Some("nonlinear_damping")]);
-    let [base, last] = [0, 1].map(|step: usize| to_deg(staircase.steps[step].rmse));
+    let [base, last] = [0, 1].map(|step: usize| to_deg(path.steps[step].rmse));
     assert!((0.08..0.12).contains(&last) && base > 1.3 * last, "{base} {last}");
     let before = &analysis.identification[0].before.errors.heading;
     assert!(
@@ -53,7 +53,7 @@ fn a_staircase_leads_from_the_base_to_the_noise() {
         "the base is the nearest response: {base} {}",
         to_deg(*before)
     );
-    assert!(staircase.steps.iter().all(|step| step.residual.len() == staircase.time.len()));
+    assert!(path.steps.iter().all(|step| step.residual.len() == path.time.len()));
 }
 
 #[test]

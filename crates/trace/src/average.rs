@@ -7,9 +7,9 @@ use identify::replay::Replay;
 use ship::ReplayedShip;
 
 use crate::fit::StructureFit;
+use crate::noise_law::NoiseLaw;
 use crate::record::PreparedRecord;
 use crate::replay_errors::{ReplayDepth, WindowError, full_replay, restarted_headings, root_mean_square};
-use crate::weights::NoiseLaw;
 
 /// Maximum ratio of the error of a replay to the median error of all members; above it the replay counts as diverged.
 const MAX_ERROR_RATIO: f64 = 3.0;
@@ -22,7 +22,7 @@ pub struct ModelAverage {
 }
 
 /// Members of a model average, with the noise law of the records.
-pub struct AveragedModel<'a> {
+pub struct FittedAverage<'a> {
     /// Structures with their posterior weights.
     pub members: &'a [(f64, &'a StructureFit)],
     /// Hulls; each has the same weight as all structures together.
@@ -53,19 +53,19 @@ impl AverageReplay {
     }
 }
 
-impl AveragedModel<'_> {
+impl FittedAverage<'_> {
     /// Weight of every hull in the average; all structures together have the same weight.
     pub fn hull_weight(&self) -> f64 {
         1.0 / (1 + self.hulls.len()) as f64
     }
 
-    /// Weights of the ships, structures first.
+    /// Weights of the ships, structures first; their sum is 1.
     pub fn weights(&self) -> impl Iterator<Item = f64> {
         let share = self.hull_weight();
         self.members.iter().map(move |(weight, _)| share * weight).chain(self.hulls.iter().map(move |_| share))
     }
 
-    /// Ships with their weights: structures first.
+    /// Model average for replays: ship and weight of every structure, then of every hull.
     pub fn average(&self) -> ModelAverage {
         let structure = |(_, fit): &(f64, &StructureFit)| -> Box<dyn ReplayedShip> {
             Box::new(fit.structure.response(self.fitted_record, &fit.theta))
@@ -98,7 +98,7 @@ impl ModelAverage {
         let within = |duration: f64| {
             let all: Option<Vec<Vec<f64>>> = replays
                 .iter()
-                .map(|(_, ship, replay)| restarted_headings(*ship, record, replay.initial(), duration))
+                .map(|(_, ship, replay)| restarted_headings(*ship, record, replay.initial_state(), duration))
                 .collect();
             let all = all?;
             let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();

@@ -16,7 +16,7 @@ use rand_distr::StandardNormal;
 use ship::Polyline;
 use trial::Trial;
 
-use crate::average::AveragedModel;
+use crate::average::FittedAverage;
 use crate::fit::{FittedRecords, StructureFit};
 use crate::record::PreparedRecord;
 
@@ -26,9 +26,9 @@ const QUANTILE: f64 = 1.959_963_984_540_054;
 /// Number of sampled residuals for each structure.
 const DRAWS: usize = 100;
 
-/// Half-width of the band at every row of the replay `mean`, rad; `None` if the covariance of a structure is singular,
-/// or if a hull has no variance on the record.
-pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
+/// Half-width of the band at every row of the replay `mean`, rad; `None` without a structure, if the covariance of a
+/// structure is singular, or if a hull has no variance on the record.
+pub fn half_width(after: &FittedAverage, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
     let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
     let problem = FittedRecords::new(vec![record], first.theta[0], after.time);
@@ -39,7 +39,7 @@ pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: 
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     let share = after.hull_weight();
     for ((weight, fit), replay) in after.members.iter().zip(members) {
-        let sampler = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
+        let sampler = ResidualSampler::new(after, &problem, fit, replay.initial_state(), law_variance)?;
         for _ in 0..DRAWS {
             let residual = sampler.draw(&mut generator);
             variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += share * weight * e * e / DRAWS as f64);
@@ -61,13 +61,13 @@ pub fn half_width(after: &AveragedModel, trial: &Trial, mean: &Replay, members: 
 
 /// Variance of the white noise of a full row and of one reading, rad²: of the record if it was fitted, otherwise the
 /// mean over the records.
-fn variances(after: &AveragedModel, problem: &FittedRecords) -> (f64, f64) {
+fn variances(after: &FittedAverage, problem: &FittedRecords) -> (f64, f64) {
     let all = &after.law.variance;
     let row = after.fitted_record.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (row, row * problem.records[0].full_readings as f64)
 }
 
-/// Moving average, because the variances of sampled noise are themselves noisy.
+/// Moving average over about a thirtieth of the rows, because sampled variances are noisy.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     let reach = (values.len() / 60).max(1);
     let mean = |row: usize| {
@@ -88,7 +88,7 @@ struct ResidualSampler {
     columns: Vec<Vec<f64>>,
     /// Sensitivities of the heading to the initial state.
     state: [Vec<f64>; 2],
-    /// Inverse of the Gram matrix of these sensitivities.
+    /// Inverse of the Gram matrix of the sensitivities to the initial state.
     inverse: Matrix2<f64>,
     errors: ParameterErrors,
 }
@@ -103,7 +103,7 @@ enum ParameterErrors {
 
 impl ResidualSampler {
     fn new(
-        after: &AveragedModel,
+        after: &FittedAverage,
         problem: &FittedRecords,
         fit: &StructureFit,
         initial: [f64; 2],
@@ -121,7 +121,7 @@ impl ResidualSampler {
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
         let covariance = fit.record_covariance(after.fitted_record)?;
-        let law = crate::weights::NoiseLaw {
+        let law = crate::noise_law::NoiseLaw {
             colour: after.law.colour,
             variance: vec![variance],
             power: vec![after.fitted_record.map_or(1.0, |number| after.law.power[number])],
@@ -130,11 +130,11 @@ impl ResidualSampler {
         let errors = match after.fitted_record {
             Some(_) => {
                 // The noise of the record entered the fit: the errors of the parameters are −H⁻¹ Jᵀ Σ⁻¹ w.
-                let weights = problem.weights(&law);
+                let whitening = problem.whitening(&law);
                 let mut whitened = columns.clone();
-                weights.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
+                whitening.apply(0, &mut whitened.iter_mut().collect::<Vec<_>>());
                 for column in &mut whitened {
-                    weights.apply_transposed(0, column);
+                    whitening.apply_transposed(0, column);
                 }
                 ParameterErrors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
             }

@@ -29,13 +29,13 @@ impl FittedBase {
 
     /// Initial heading (rad) and yaw rate (rad/s) of every replay.
     pub fn initial(&self) -> Vec<[f64; 2]> {
-        self.replays.iter().map(Replay::initial).collect()
+        self.replays.iter().map(Replay::initial_state).collect()
     }
 
     /// Mean square of the heading residual over all records, rad².
     pub fn mean_square(&self) -> f64 {
         let (sum, rows) = self.replays.iter().fold((0.0, 0.0), |(sum, rows), replay| {
-            let count = replay.observed().count() as f64;
+            let count = replay.observed_residuals().count() as f64;
             (sum + replay.rms().powi(2) * count, rows + count)
         });
         sum / rows

@@ -10,10 +10,10 @@ use crate::model::Term;
 use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
-/// Minimum range of the propeller revolutions, relative to their root mean square, at which they are an input.
+/// Range of the propeller revolutions, relative to their root mean square, above which they are an input.
 const MIN_PROPELLER_CHANGE: f64 = 0.05;
 
-/// Prior probability of an effect.
+/// Prior probability of an effect, shared equally by its forms.
 pub const PRIOR_PROBABILITY: f64 = 0.1;
 
 /// Prior probability of an effect of the measured speed or sway, which occurs for every hull.
@@ -42,20 +42,20 @@ pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, re
     };
     let angles = records.iter().flat_map(|record| record.rudder.values());
     RecordScales {
-        time,
-        rudder: angles.fold(1e-3_f64, |largest, delta| largest.max(delta.abs())),
+        ship_length_time: time,
+        max_rudder: angles.fold(1e-3_f64, |largest, delta| largest.max(delta.abs())),
         duration: records.iter().map(PreparedRecord::duration).fold(0.0, f64::max),
-        spacing: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
+        row_interval: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
         speed: mean_speed.map(speed),
-        sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
-        wind_square: mean_square(records, |record| record.wind_speed.as_ref()),
-        propeller: propeller(),
+        approach_speed_for_sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
+        mean_square_wind_speed: mean_square(records, |record| record.wind_speed.as_ref()),
+        rms_propeller_rate: propeller(),
         span: [record.time[0], record.time[record.time.len() - 1]],
     }
 }
 
-/// `true` if a declared calm excludes an effect of the weather that was not requested: the record in which it would act
-/// declares a calm, or all records if it would act in all of them.
+/// `true` if a declared calm excludes an effect of the weather that is not required: a calm of the record in which it
+/// would act, or of all records for an effect that acts in all of them.
 pub fn is_barred_by_calm(effect: &dyn Effect, record: Option<usize>, trials: &[Trial], selection: &Selection) -> bool {
     let is_calm = || record.map_or_else(|| trials.iter().all(Trial::is_calm), |number| trials[number].is_calm());
     effect.is_environmental() && !selection.requires(effect.id()) && is_calm()

@@ -3,7 +3,7 @@
 //! Only initial states are fitted here; on held-out records also a bias or a slow moment of the record, reported
 //! separately.
 
-use document::trace::{ErrorsEntry, HorizonEntry};
+use document::trace::{HorizonEntry, ModelReplayErrors};
 use estimation::statistics::wilson_interval;
 use identify::replay::{Replay, replay};
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{AverageReplay, AveragedModel, ModelAverage};
+use crate::average::{AverageReplay, FittedAverage, ModelAverage};
 use crate::band;
 use crate::record::PreparedRecord;
 use crate::record_moment::RecordMoment;
@@ -89,7 +89,7 @@ impl ReplayResult {
     }
 }
 
-impl From<&ReplayResult> for ErrorsEntry {
+impl From<&ReplayResult> for ModelReplayErrors {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
         let horizon = HORIZONS_S.map(|window| (format!("{window:.0}"), errors.restarted_rms(window).map(to_deg)));
@@ -116,7 +116,7 @@ pub struct RecordComparison {
 }
 
 impl RecordComparison {
-    /// Heading errors by prediction horizon: windows that fit into the record more than once, then the whole record.
+    /// Heading errors by prediction horizon: windows of at most two thirds of the record, then the whole record.
     pub fn horizons(&self) -> Vec<HorizonEntry> {
         let [before, after] = [&self.before.errors, &self.after.errors];
         let time = &self.before.replay.time;
@@ -134,12 +134,13 @@ impl RecordComparison {
 }
 
 /// Start values of the initial heading (rad) and yaw rate (rad/s): the first heading with zero yaw rate, the initial
-/// state of the replay of the base, and the first heading with the measured yaw rate. The last two only where known.
+/// state of the replay of the base if it is finite, and the first heading with the first yaw rate if it is measured.
+/// Empty without headings.
 pub fn initial_state_guesses(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
     let Some(first) = trial.observed_rows().next() else { return Vec::new() };
     let heading = trial.heading()[first];
     let mut starts = vec![[heading, 0.0]];
-    starts.extend(replay(trial, base).map(|replay| replay.initial()));
+    starts.extend(replay(trial, base).map(|replay| replay.initial_state()));
     starts.extend(trial.yaw_rate().map(|rate| rate[first]).filter(|rate| rate.is_finite()).map(|rate| [heading, rate]));
     starts
 }
@@ -156,20 +157,20 @@ pub fn replay_base(
     let average = ModelAverage { members: vec![(1.0, Box::new(Response::first_order_ship(*base)))] };
     let windows = match depth {
         ReplayDepth::Heading => None,
-        _ => average.replay(record, &[replay.initial()], depth).map(|replayed| replayed.windows),
+        _ => average.replay(record, &[replay.initial_state()], depth).map(|replayed| replayed.windows),
     };
     Ok(result(trial, replay, windows.unwrap_or_default(), depth))
 }
 
-impl AveragedModel<'_> {
-    /// Comparison on a held-out record; if `thorough`, also the errors with a fitted moment of the record and by
-    /// horizon. Fails if no replay is finite.
+impl FittedAverage<'_> {
+    /// Comparison on a held-out record; if `thorough`, also the errors with a fitted moment of the record and for all
+    /// horizons ([`ReplayDepth::Growth`]). Fails if no replay is finite.
     pub fn compare(&self, trial: &Trial, base: &FirstOrder, thorough: bool) -> Result<RecordComparison, TraceError> {
         let record = PreparedRecord::unaveraged(trial);
         let depth = if thorough { ReplayDepth::Growth } else { ReplayDepth::Windows };
         let mut before = replay_base(trial, &record, base, depth)?;
         let mut starts = initial_state_guesses(trial, base);
-        starts.push(before.replay.initial());
+        starts.push(before.replay.initial_state());
         let mut after = self.replay_on(trial, &record, &starts, depth)?;
         if let Some(moment) = thorough.then(|| RecordMoment::new(&record, base)).flatten() {
             before.errors.fitted_moment_errors = Some(moment.base_errors(&before.replay));
@@ -188,7 +189,8 @@ impl AveragedModel<'_> {
         trials.par_iter().map(|trial| self.compare(trial, base, thorough)).collect()
     }
 
-    /// Replay of the average on a record from initial states near the `starts`; fails if no replay is finite.
+    /// Replay of the average on a record from initial states near the `starts` (rad, rad/s), with its errors and band;
+    /// fails if no replay is finite.
     pub fn replay_on(
         &self,
         trial: &Trial,
@@ -212,7 +214,7 @@ impl AveragedModel<'_> {
 fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: ReplayDepth) -> ReplayResult {
     let thorough = depth != ReplayDepth::Heading;
     let first = trial.observed_rows().next().unwrap_or(0);
-    let rows = replay.observed().count();
+    let rows = replay.observed_residuals().count();
     let finite = |values: &[f64]| -> Vec<f64> { values.iter().copied().filter(|x| x.is_finite()).collect() };
     let yaw_rate = trial.yaw_rate().filter(|_| thorough).and_then(|measured| {
         let differences: Vec<f64> =

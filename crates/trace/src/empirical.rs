@@ -21,7 +21,7 @@ pub struct Monomial {
     /// Exponents and magnitudes.
     pub powers: &'static MonomialPowers,
     /// Scales: 0.2 U/L for r (rad/s), the maximum rudder angle for δ (rad), root mean squares for ψ (rad) and U (m/s).
-    pub size: [f64; 4],
+    pub scales: [f64; 4],
 }
 
 /// Exponents of r, δ, ψ and U in one monomial of the library of empirical terms.
@@ -55,8 +55,8 @@ impl MonomialPowers {
         Self { exponents, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
     }
 
-    /// Formula for [`Formula::parse`](ship::effects::Formula::parse): "proposal = c * r^2 * delta".
-    pub fn line(&self) -> String {
+    /// Text that [`Formula::parse`](ship::effects::Formula::parse) reads, such as "proposal = c * r^2 * delta".
+    pub fn formula_text(&self) -> String {
         let factor = |(place, name): (usize, &str)| match (self.exponents[place], self.magnitude[place]) {
             (0, _) => String::new(),
             (1, false) => format!(" * {name}"),
@@ -105,9 +105,9 @@ pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> im
     };
     let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
     let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
-    let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
+    let scales = [0.2 / time, about.max_rudder, heading, speed.unwrap_or(1.0)];
     all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
-        let CandidateEffect { effect, priors } = Monomial { powers, size }.candidate(&about)?;
+        let CandidateEffect { effect, priors } = Monomial { powers, scales }.candidate(&about)?;
         Some(Arc::new(Term { effect, record_index: None, priors, log_odds: LOG_ODDS }))
     })
 }
@@ -131,7 +131,7 @@ impl Effect for Monomial {
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
-        self.size.into_iter().zip([[-1, 0], [0, 0], [0, 0], [-1, 1]]).collect()
+        self.scales.into_iter().zip([[-1, 0], [0, 0], [0, 0], [-1, 1]]).collect()
     }
 
     fn is_heading_dependent(&self) -> bool {
@@ -156,7 +156,7 @@ impl<R: EffectReal> EffectEquations<R> for Monomial {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
         let power = |k: usize| {
-            let (x, exponent) = (factors[k] / self.size[k], self.powers.exponents[k]);
+            let (x, exponent) = (factors[k] / self.scales[k], self.powers.exponents[k]);
             if self.powers.magnitude[k] { x.powi(exponent - 1) * x.abs() } else { x.powi(exponent) }
         };
         (0..factors.len()).fold(now.K_over_T * p[0], |product, k| product * power(k))
@@ -182,9 +182,12 @@ mod tests {
             let powers = MonomialPowers::from_notation(form);
             assert_eq!((powers.exponents, powers.magnitude), (exponents, magnitude), "{form}");
         }
-        assert_eq!(MonomialPowers::from_notation("r²δ").line(), "proposal = c * r^2 * delta");
-        assert_eq!(MonomialPowers::from_notation("δ|δ||ψ|").line(), "proposal = c * delta * abs(delta) * abs(psi)");
-        assert!(all().iter().all(|powers| ship::effects::Formula::parse(&powers.line()).is_ok()));
+        assert_eq!(MonomialPowers::from_notation("r²δ").formula_text(), "proposal = c * r^2 * delta");
+        assert_eq!(
+            MonomialPowers::from_notation("δ|δ||ψ|").formula_text(),
+            "proposal = c * delta * abs(delta) * abs(psi)"
+        );
+        assert!(all().iter().all(|powers| ship::effects::Formula::parse(&powers.formula_text()).is_ok()));
         assert_eq!((without_magnitudes().len(), all().len()), (18, 59));
     }
 }

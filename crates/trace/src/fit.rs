@@ -7,7 +7,7 @@
 //! the prior standard deviation s. Unknowns are the fitted entries of θ in order, then the initial heading and yaw rate
 //! of every record.
 
-use estimation::levenberg_marquardt::{Minimum, NormalEquations, Objective, SearchSettings, minimise};
+use estimation::levenberg_marquardt::{NormalEquations, Objective, SearchResult, SearchSettings, minimise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use ship::effects::Prior;
@@ -16,8 +16,8 @@ use statrs::distribution::{self, ContinuousCDF};
 use crate::linear::{Linearisation, heading_sensitivities};
 use crate::model::{Structure, replay_headings};
 use crate::noise::RecordNoise;
+use crate::noise_law::{NoiseLaw, RecordWhitening};
 use crate::record::PreparedRecord;
-use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Stopping rule of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,16 +89,16 @@ impl FittedRecords {
     /// Log normaliser of the noise density under a law, up to a constant: −½ Σ p (n log σ² + Σ log S) over records with
     /// n headings and the power p; S are the variances of the innovations in units of σ².
     pub fn log_normaliser(&self, law: &NoiseLaw) -> f64 {
-        let whiteners = self.weights(law).whiteners;
+        let whiteners = self.whitening(law).whiteners;
         let normaliser = |(number, record): (usize, &PreparedRecord)| {
             let rows = record.observed.len() as f64;
-            law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_variance)
+            law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_determinant)
         };
         -0.5 * self.records.iter().enumerate().map(normaliser).sum::<f64>()
     }
 
-    /// Whitening filters of all records under a law.
-    pub fn weights(&self, law: &NoiseLaw) -> RecordWhitening {
+    /// Whitening filters of all records under a law, with the scales √(p/σ²).
+    pub fn whitening(&self, law: &NoiseLaw) -> RecordWhitening {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();
         let scale = law.variance.iter().zip(&law.power).map(|(variance, power)| (power / variance).sqrt());
         RecordWhitening { whiteners, scale: scale.collect() }
@@ -117,7 +117,7 @@ impl FittedRecords {
         self.records.par_iter().enumerate().map(residual).collect()
     }
 
-    /// Residual and heading sensitivities at a point.
+    /// Heading residual of every record and its sensitivities to all unknowns, at a point.
     pub fn linearise(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linearisation {
         let (entries, fitted) = (structure.entries(), structure.fitted_indices());
         let unknowns = fitted.len() + 2 * self.records.len();
@@ -140,21 +140,21 @@ impl FittedRecords {
         Linearisation { blocks: self.records.par_iter().enumerate().map(sensitivities).collect(), unknowns }
     }
 
-    /// Fits a structure from a start point.
+    /// Maximum a posteriori estimate of a structure, searched from a start point to the stopping rule `effort`.
     pub fn fit(
         &self,
         structure: &Structure,
         theta: Vec<f64>,
         initial: Vec<[f64; 2]>,
-        weights: &RecordWhitening,
+        whitening: &RecordWhitening,
         effort: StoppingRule,
     ) -> StructureFit {
         let priors = structure.entries().into_iter().map(|entry| entry.prior).collect();
         let (last, kept) = (FitPoint::default(), FitPoint::default());
-        let mut search = PosteriorSearch { problem: self, structure, weights, priors, last, kept };
+        let mut search = PosteriorSearch { problem: self, structure, whitening, priors, last, kept };
         let start = search.unknowns(&theta, &initial);
         search.last = search.point(theta, initial);
-        let Minimum { normal, .. } = minimise(&mut search, start, &effort.rules());
+        let SearchResult { normal, .. } = minimise(&mut search, start, &effort.rules());
         let kept = search.kept;
         StructureFit {
             evidence: evidence(structure, &kept, &normal),
@@ -174,9 +174,9 @@ impl FittedRecords {
         structure: &Structure,
         theta: &[f64],
         initial: &[[f64; 2]],
-        weights: &RecordWhitening,
+        whitening: &RecordWhitening,
     ) -> NormalEquations {
-        normal_equations(&self.linearise(structure, theta, initial), structure, theta, weights)
+        normal_equations(&self.linearise(structure, theta, initial), structure, theta, whitening)
     }
 }
 
@@ -195,7 +195,7 @@ struct FitPoint {
 struct PosteriorSearch<'a> {
     problem: &'a FittedRecords,
     structure: &'a Structure,
-    weights: &'a RecordWhitening,
+    whitening: &'a RecordWhitening,
     priors: Vec<Prior>,
     /// Point evaluated last.
     last: FitPoint,
@@ -214,7 +214,7 @@ impl PosteriorSearch<'_> {
     /// Residual, misfit and J = misfit + Σ (prior deviations)² at a point; J is infinite where it is not a number.
     fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
-        let misfit = self.weights.misfit(&residual);
+        let misfit = self.whitening.misfit(&residual);
         let penalty: f64 = self.priors.iter().zip(&theta).map(|(prior, &x)| prior_deviation(*prior, x).powi(2)).sum();
         let value = misfit + penalty;
         FitPoint { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
@@ -241,7 +241,7 @@ impl Objective for PosteriorSearch<'_> {
     fn linearise(&mut self, _: &[f64], normal: &mut NormalEquations) -> f64 {
         self.kept.clone_from(&self.last);
         let FitPoint { theta, initial, .. } = &self.kept;
-        *normal = self.problem.normal_equations(self.structure, theta, initial, self.weights);
+        *normal = self.problem.normal_equations(self.structure, theta, initial, self.whitening);
         self.kept.value
     }
 }
@@ -251,12 +251,12 @@ pub fn normal_equations(
     linear: &Linearisation,
     structure: &Structure,
     theta: &[f64],
-    weights: &RecordWhitening,
+    whitening: &RecordWhitening,
 ) -> NormalEquations {
-    let (mut normal, _) = linear.normal_equations(weights);
+    let (mut normal, _) = linear.normal_equations(whitening);
     for (k, (prior, value)) in structure.fitted_priors(theta).into_iter().enumerate() {
         normal.matrix[(k, k)] += prior_precision(prior);
-        normal.gradient[k] -= prior_deviation(prior, value) * prior_precision(prior).sqrt();
+        normal.right_hand_side[k] -= prior_deviation(prior, value) * prior_precision(prior).sqrt();
     }
     normal
 }
@@ -273,7 +273,7 @@ pub fn prior_precision(prior: Prior) -> f64 {
 
 /// Log normaliser of a prior truncated to its bounds: the logarithm of the factor before exp(−½ ((x − μ)/s)²). 0 for a
 /// fixed value.
-pub fn log_normaliser(prior: Prior) -> f64 {
+pub fn log_prior_normaliser(prior: Prior) -> f64 {
     if !prior.is_fitted() {
         return 0.0;
     }
@@ -290,15 +290,16 @@ pub fn log_normaliser(prior: Prior) -> f64 {
 fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);
-    let of_terms = structure.entries()[structure.base_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
-    let constants: f64 = priors[priors.len() - of_terms..].iter().map(|(prior, _)| log_normaliser(*prior)).sum();
+    let of_terms =
+        structure.entries()[structure.base_parameter_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
+    let constants: f64 = priors[priors.len() - of_terms..].iter().map(|(prior, _)| log_prior_normaliser(*prior)).sum();
     let volume = 0.5 * of_terms as f64 * std::f64::consts::TAU.ln() - 0.5 * factor.ln_determinant();
     let covariance = factor.inverse();
     let law = distribution::Normal::standard();
     let inside = |(k, &(prior, value)): (usize, &(Prior, f64))| {
         let sd = covariance[(k, k)].sqrt();
         let held = normal.is_bound_active(k, value, [prior.lowest, prior.highest]);
-        let push = if held { normal.gradient[k] * sd } else { 0.0 };
+        let push = if held { normal.right_hand_side[k] * sd } else { 0.0 };
         let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
         let room = if push > 0.0 { to_high - push } else { to_low + push };
         // Logarithm of ∫ exp(|push| x − ½ x²) dx/√2π up to the bound; far beyond the bound its asymptotic value.
@@ -337,13 +338,13 @@ impl StructureFit {
         &self,
         out: usize,
         problem: &FittedRecords,
-        weights: &RecordWhitening,
+        whitening: &RecordWhitening,
         effort: StoppingRule,
     ) -> Self {
         let (mut terms, mut theta) = (self.structure.terms.clone(), self.theta.clone());
         theta.drain(self.structure.term_ranges()[out].clone());
         terms.remove(out);
-        problem.fit(&self.structure.with_terms(terms), theta, self.initial.clone(), weights, effort)
+        problem.fit(&self.structure.with_terms(terms), theta, self.initial.clone(), whitening, effort)
     }
 
     /// Covariance of all entries of θ, zero for fixed entries; `None` if the precision is singular.

@@ -11,8 +11,8 @@ use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::law::{self, EstimatedNoiseLaw};
 use crate::model::{Structure, Term};
 use crate::noise::CorrelatedNoise;
+use crate::noise_law::{NoiseLaw, RecordWhitening};
 use crate::transient;
-use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Noise standard deviation of the first fit over the root mean square residual of the base.
 const FIRST_NOISE_RATIO: f64 = 0.1;
@@ -46,7 +46,7 @@ pub fn fit(
     let base_structure = Structure::base(problem.records.len(), problem.time);
     let structure = base_structure.with_terms(stationary.into_iter().cloned().collect());
     let first = NoiseLaw::white(problem.records.len(), (FIRST_NOISE_RATIO * FIRST_NOISE_RATIO) * base.mean_square());
-    let fit = fit_stationary(problem, base, &structure, &problem.weights(&first));
+    let fit = fit_stationary(problem, base, &structure, &problem.whitening(&first));
     let estimate_law = |fit: &StructureFit, from: &NoiseLaw, kinds: &[CorrelatedNoise]| {
         law::estimate(problem, fit, &from.variance, with_waves, kinds)
     };
@@ -54,9 +54,9 @@ pub fn fit(
 
     // Moments with an instant start where they reduce the misfit most in addition to all other terms.
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
-    let weights = problem.weights(&stationary.law);
+    let whitening = problem.whitening(&stationary.law);
     let moments: Vec<&Term> = transient.iter().map(|term| term.as_ref()).collect();
-    for (candidate, place) in transient.iter().zip(transient::start_values(problem, &fit, &weights, &moments)) {
+    for (candidate, place) in transient.iter().zip(transient::start_values(problem, &fit, &whitening, &moments)) {
         if let Some(place) = place {
             theta.extend(place);
             terms.push(Arc::clone(candidate));
@@ -64,7 +64,7 @@ pub fn fit(
     }
     let structure = base_structure.with_terms(terms);
     let refit = |law: &NoiseLaw| {
-        problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.weights(law), StoppingRule::COARSE)
+        problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.whitening(law), StoppingRule::COARSE)
     };
     let stationary_law = stationary.law.clone();
     let whole = refit(&stationary_law);
@@ -94,7 +94,7 @@ fn base_only(problem: &FittedRecords, base: &FittedBase, with_waves: bool, kinds
     let law = NoiseLaw::white(problem.records.len(), base.mean_square());
     let theta = start_point(&structure, &base.estimate.response, std::iter::empty());
     let refit = |theta: Vec<f64>, initial: Vec<[f64; 2]>, law: &NoiseLaw| {
-        problem.fit(&structure, theta, initial, &problem.weights(law), StoppingRule::FINE)
+        problem.fit(&structure, theta, initial, &problem.whitening(law), StoppingRule::FINE)
     };
     let fit = refit(theta, base.initial(), &law);
     let EstimatedNoiseLaw { law, waves_gain, .. } = law::estimate(problem, &fit, &law.variance, with_waves, kinds);
@@ -106,14 +106,14 @@ fn fit_stationary(
     problem: &FittedRecords,
     base: &FittedBase,
     structure: &Structure,
-    weights: &RecordWhitening,
+    whitening: &RecordWhitening,
 ) -> StructureFit {
     let starts: [fn(&Term) -> Vec<f64>; 2] =
         [|term| term.priors.iter().map(|prior| prior.mean).collect(), Term::neutral];
     let fits = starts.par_iter().map(|values| {
         let theta =
             start_point(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
-        problem.fit(structure, theta, base.initial(), weights, StoppingRule { max_steps: 4, ..StoppingRule::COARSE })
+        problem.fit(structure, theta, base.initial(), whitening, StoppingRule { max_steps: 4, ..StoppingRule::COARSE })
     });
     let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
     let fits: Vec<StructureFit> = fits.collect();
@@ -123,7 +123,7 @@ fn fit_stationary(
 /// Start point θ: parameters of the base, zero deviations of the rudder bias, then the values of the terms.
 pub fn start_point(structure: &Structure, response: &FirstOrder, of_terms: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut theta = vec![response.inverse_T, response.K_over_T, response.rudder_bias];
-    theta.resize(structure.base_count(), 0.0);
+    theta.resize(structure.base_parameter_count(), 0.0);
     theta.extend(of_terms);
     theta
 }

@@ -18,12 +18,12 @@ pub fn fit(
     comparisons: &[RecordComparison],
     residual_analysis: &ResidualAnalysis,
 ) -> Vec<HullEstimate> {
-    if !settings.fits_hulls || residual_analysis.is_noise && settings.earlier.is_empty() {
+    if !settings.fits_hulls || residual_analysis.is_noise && settings.earlier_hulls.is_empty() {
         return Vec::new();
     }
     let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
     hull::supported_hulls(
-        hull::fit_all(trials, &settings.earlier),
+        hull::fit_all(trials, &settings.earlier_hulls),
         (heading_error_squares(comparisons)[1] / rows as f64).sqrt(),
     )
 }

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 use crate::fit::{FittedRecords, StructureFit, prior_deviation, prior_precision};
 use crate::linear::Linearisation;
 use crate::noise::{CorrelatedNoise, NoiseColour};
+use crate::noise_law::{NoiseLaw, RecordWhitening};
 use crate::waves;
-use crate::weights::{NoiseLaw, RecordWhitening};
 
 /// Lower bound of the standard deviation of a heading, rad: a thousandth of a degree.
 pub const MIN_HEADING_SD_RAD: f64 = 1.75e-5;
@@ -97,13 +97,13 @@ impl<'a> LinearisedFit<'a> {
         all.min_by(|a, b| a.criterion.total_cmp(&b.criterion)).expect("white noise is a candidate")
     }
 
-    /// Cholesky factor of the precision of all unknowns under weights, and their Gauss–Newton step; `None` if the
+    /// Cholesky factor of the precision of all unknowns under a whitening, and their Gauss–Newton step; `None` if the
     /// precision is singular.
-    pub fn solve(&self, weights: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-        let (mut normal, _) = self.linear.normal_equations(weights);
+    pub fn solve(&self, whitening: &RecordWhitening) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
+        let (mut normal, _) = self.linear.normal_equations(whitening);
         self.add_prior(&mut normal);
         let factor = normal.matrix.cholesky()?;
-        let step = factor.solve(&normal.gradient);
+        let step = factor.solve(&normal.right_hand_side);
         Some((factor, step))
     }
 
@@ -112,33 +112,33 @@ impl<'a> LinearisedFit<'a> {
     fn add_prior(&self, normal: &mut NormalEquations) {
         for (k, &(precision, offset)) in self.prior.iter().enumerate() {
             normal.matrix[(k, k)] += precision;
-            normal.gradient[k] -= precision * offset;
+            normal.right_hand_side[k] -= precision * offset;
         }
     }
 
     /// Noise variances of all records under a colour, from `start`, with the criterion −2 log p.
     fn evaluate(&self, colour: NoiseColour, start: &[f64]) -> EstimatedNoiseLaw {
         let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
-        let weights = self.problem.weights(&unit);
+        let whitening = self.problem.whitening(&unit);
         let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
         // Normal equations of every record under unit variance: for other variances they are multiples.
         let blocks: Vec<(NormalEquations, Vec<f64>)> =
-            (0..start.len()).map(|k| self.record_normal(k, &weights)).collect();
+            (0..start.len()).map(|k| self.record_normal(k, &whitening)).collect();
         let mut criterion = f64::INFINITY;
         for _ in 0..ROUNDS {
-            let Some((next, value)) = self.update(&law, &blocks, &weights) else { break };
+            let Some((next, value)) = self.update(&law, &blocks, &whitening) else { break };
             law.variance = next;
             criterion = value;
         }
         EstimatedNoiseLaw { law, criterion, waves_gain: 0.0 }
     }
 
-    /// Normal equations of one record alone, and its whitened residual sum of squares, as a list of one.
+    /// Normal equations of a single record, and its whitened residual sum of squares as the only entry of a list.
     fn record_normal(&self, record: usize, all: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let alone = Linearisation { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
-        let weights =
+        let whitening =
             RecordWhitening { whiteners: vec![all.whiteners[record].clone()], scale: vec![all.scale[record]] };
-        alone.normal_equations(&weights)
+        alone.normal_equations(&whitening)
     }
 
     /// Updated variances and the criterion at the old variances; `None` if the precision is singular.
@@ -146,26 +146,26 @@ impl<'a> LinearisedFit<'a> {
         &self,
         law: &NoiseLaw,
         blocks: &[(NormalEquations, Vec<f64>)],
-        weights: &RecordWhitening,
+        whitening: &RecordWhitening,
     ) -> Option<(Vec<f64>, f64)> {
         let mut normal = NormalEquations::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
             normal.matrix += &block.matrix / *variance;
-            normal.gradient += &block.gradient / *variance;
+            normal.right_hand_side += &block.right_hand_side / *variance;
         }
         self.add_prior(&mut normal);
-        let NormalEquations { matrix, gradient } = normal;
+        let NormalEquations { matrix, right_hand_side } = normal;
         let penalty = self.prior.iter().fold(0.0, |sum, &(precision, offset)| sum + precision * offset * offset);
         let factor = matrix.cholesky()?;
-        let step = factor.solve(&gradient);
+        let step = factor.solve(&right_hand_side);
         let inverse = factor.inverse();
-        let mut criterion = factor.ln_determinant() + penalty - step.dot(&gradient);
+        let mut criterion = factor.ln_determinant() + penalty - step.dot(&right_hand_side);
         let mut variances = Vec::with_capacity(blocks.len());
         for (record, ((block, squares), variance)) in blocks.iter().zip(&law.variance).enumerate() {
             let square = squares[0];
             let rows = self.linear.blocks[record].residual.len() as f64;
-            criterion += rows * variance.ln() + weights.whiteners[record].log_variance + square / variance;
-            let residual = square - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
+            criterion += rows * variance.ln() + whitening.whiteners[record].log_determinant + square / variance;
+            let residual = square - 2.0 * step.dot(&block.right_hand_side) + step.dot(&(&block.matrix * &step));
             let absorbed = (inverse.component_mul(&block.matrix)).sum() / variance;
             variances.push((residual.max(0.0) / (rows - absorbed).max(0.2 * rows)).max(self.floors[record]));
         }
@@ -242,7 +242,7 @@ impl NoiseLaw {
     /// Raises a smooth model error to its lower bound, and sets the power of the likelihood to the effective number of
     /// readings. Other laws are unchanged.
     fn with_model_error_bound(mut self, problem: &FittedRecords) -> Self {
-        let Some((CorrelatedNoise::Smooth(_), level)) = self.colour.correlated else { return self };
+        let Some((CorrelatedNoise::SmoothError(_), level)) = self.colour.correlated else { return self };
         for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
             let rows = record.observed.len() as f64;
             let heading = || record.observed.iter().map(|&row| record.heading[row]);

@@ -6,7 +6,7 @@ use identify::hull::HullEstimate;
 use rayon::prelude::*;
 use trial::Trial;
 
-use crate::average::AveragedModel;
+use crate::average::FittedAverage;
 use crate::base::FittedBase;
 use crate::comparison::RecordComparison;
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
@@ -14,8 +14,8 @@ use crate::fold_observer::FoldObserver;
 use crate::full::FullModel;
 use crate::hulls;
 use crate::model::Structure;
+use crate::noise_law::NoiseLaw;
 use crate::structures::{Structures, WeighedStructure};
-use crate::weights::NoiseLaw;
 
 /// Maximum number of structures that are refitted.
 const MAX_STRUCTURES: usize = 4;
@@ -40,10 +40,10 @@ pub fn leave_one_out(
             power: without(&full.law.power, omitted),
             ..full.law.clone()
         };
-        let weights = kept.weights(&law);
+        let whitening = kept.whitening(&law);
         let refitted = structures.all.iter().take(MAX_STRUCTURES).map(|member| {
             let (structure, theta) = without_record(&member.fit, omitted);
-            kept.fit(&structure, theta, without(&member.fit.initial, omitted), &weights, StoppingRule::FINE)
+            kept.fit(&structure, theta, without(&member.fit.initial, omitted), &whitening, StoppingRule::FINE)
         });
         let fits: Vec<(f64, StructureFit)> =
             refitted.zip(&structures.all).map(|(fit, member)| (log_posterior(&fit, member), fit)).collect();
@@ -55,7 +55,7 @@ pub fn leave_one_out(
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
         let (hulls, time) = (hulls::refit(hulls, &without(trials, omitted)), problem.time);
-        let averaged = AveragedModel { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
+        let averaged = FittedAverage { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
         averaged.compare(&trials[omitted], &base.estimate.response, true).ok()
     };
     let watched = |omitted: usize| {
@@ -80,8 +80,8 @@ fn without<T: Clone>(all: &[T], omitted: usize) -> Vec<T> {
 fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
     let structure = &fit.structure;
     let mut theta = fit.theta[..3].to_vec();
-    if structure.records > 2 {
-        theta.extend(without(&fit.theta[3..structure.base_count()], omitted));
+    if structure.record_count > 2 {
+        theta.extend(without(&fit.theta[3..structure.base_parameter_count()], omitted));
     }
     let mut terms = Vec::new();
     for (term, range) in structure.terms.iter().zip(structure.term_ranges()) {
@@ -93,5 +93,5 @@ fn without_record(fit: &StructureFit, omitted: usize) -> (Structure, Vec<f64>) {
         kept.record_index = kept.record_index.map(|index| if index > omitted { index - 1 } else { index });
         terms.push(kept.into());
     }
-    (Structure { records: structure.records - 1, terms, ..*structure }, theta)
+    (Structure { record_count: structure.record_count - 1, terms, ..*structure }, theta)
 }

@@ -4,12 +4,12 @@ use estimation::column::dot;
 use estimation::levenberg_marquardt::NormalEquations;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use ship::DIRECTIONS;
+use ship::TANGENT_DERIVATIVES;
 use ship::Tangent;
 
 use crate::model::{Structure, replay_headings};
+use crate::noise_law::RecordWhitening;
 use crate::record::PreparedRecord;
-use crate::weights::RecordWhitening;
 
 /// Heading residual and sensitivities of one record.
 #[derive(Debug, Clone)]
@@ -21,12 +21,12 @@ pub struct HeadingSensitivities {
 }
 
 impl HeadingSensitivities {
-    /// Residual and columns after whitening under `weights`.
-    pub fn whitened(&self, record: usize, weights: &RecordWhitening) -> Self {
+    /// Whitened residual and columns.
+    pub fn whitened(&self, record: usize, whitening: &RecordWhitening) -> Self {
         let mut white = self.clone();
         let mut all: Vec<&mut Vec<f64>> = white.columns.iter_mut().map(|(_, column)| column).collect();
         all.push(&mut white.residual);
-        weights.apply(record, &mut all);
+        whitening.apply(record, &mut all);
         white
     }
 
@@ -62,7 +62,7 @@ pub fn heading_sensitivities(
         });
         (residual, columns)
     };
-    let passes: Vec<_> = variables.par_chunks(DIRECTIONS).map(pass).collect();
+    let passes: Vec<_> = variables.par_chunks(TANGENT_DERIVATIVES).map(pass).collect();
     let residual = passes[0].0.clone();
     let columns = passes.into_iter().flat_map(|(_, columns)| columns);
     HeadingSensitivities { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
@@ -78,11 +78,11 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    /// Normal equations under weights, and the sum of squared whitened residuals of every record.
-    pub fn normal_equations(&self, weights: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
+    /// Normal equations under a whitening, and the sum of squared whitened residuals of every record.
+    pub fn normal_equations(&self, whitening: &RecordWhitening) -> (NormalEquations, Vec<f64>) {
         let (mut normal, mut squares) = (NormalEquations::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
-            let HeadingSensitivities { residual, columns } = block.whitened(record, weights);
+            let HeadingSensitivities { residual, columns } = block.whitened(record, whitening);
             for (k, (i, column)) in columns.iter().enumerate() {
                 for (j, other) in &columns[..=k] {
                     let product = dot(column, other);
@@ -91,7 +91,7 @@ impl Linearisation {
                         normal.matrix[(*j, *i)] += product;
                     }
                 }
-                normal.gradient[*i] += dot(column, &residual);
+                normal.right_hand_side[*i] += dot(column, &residual);
             }
             squares.push(dot(&residual, &residual));
         }

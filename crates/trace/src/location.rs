@@ -1,5 +1,5 @@
-//! Selection between named effects and shapes: an effect is named only if no shape explains the records better in its
-//! place; the residual of the named effects is then searched for shapes.
+//! Selection between named effects and shapes: an effect that is not required is named only if no shape explains the
+//! records better in its place; the residual of the named effects is then searched for shapes.
 
 use std::sync::Arc;
 
@@ -21,8 +21,8 @@ const MIN_DENSITY_RATIO: f64 = 4.0;
 
 /// Named effects, displaced effects, and the shape analysis of the residual.
 #[derive(Debug, Clone)]
-pub struct Location {
-    /// Named effects, the most probable first.
+pub struct Attribution {
+    /// Named effects, required effects first.
     pub named: Vec<EffectNaming>,
     /// Effects dropped because shapes or a random moment explain the records better in their place.
     pub displaced: Vec<EffectNaming>,
@@ -30,18 +30,18 @@ pub struct Location {
     pub shapes: Option<ShapeAnalysis>,
 }
 
-impl Location {
+impl Attribution {
     /// Random moment in addition to named effects and shapes; `None` without one, or if the rudder noise explains it.
     pub fn unexplained_random_moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
         let moment = self.shapes.as_ref()?.moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
-        let is_of_rudder = moment.white.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
+        let is_of_rudder = moment.white_density.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
         (!is_of_rudder).then_some(moment)
     }
 
     /// `true` if the gain of the shapes is significant.
-    pub fn is_located(&self) -> bool {
-        self.shapes.as_ref().is_some_and(ShapeAnalysis::is_located)
+    pub fn has_significant_shapes(&self) -> bool {
+        self.shapes.as_ref().is_some_and(ShapeAnalysis::has_significant_shapes)
     }
 }
 
@@ -53,36 +53,37 @@ struct NamedStructures<'a> {
     candidates: &'a [Arc<Term>],
 }
 
-/// Chooses between the probable effects and shapes.
-pub fn locate(
+/// Named effects, displaced effects and shapes: of the probable effects, those that shapes or a random moment replace
+/// with a better criterion are dropped. Required effects stay.
+pub fn attribute(
     problem: &FittedRecords,
     full: &FullModel,
     structures: &Structures,
     candidates: &[Arc<Term>],
     settings: &Settings,
-) -> Location {
+) -> Attribution {
     let named_structures = NamedStructures { problem, full, structures, candidates };
     let is_asked = |effect: &EffectNaming| settings.selection.requires(effect.term.0);
-    let mut probable = named_effects(structures, settings.probability, &settings.selection);
+    let mut probable = named_effects(structures, settings.min_probability, &settings.selection);
     probable.retain(|effect| is_asked(effect) || named_structures.is_supported(effect));
     let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
     let all = named_structures.shapes(&[asked.as_slice(), &open].concat());
     if open.is_empty() {
-        return Location { named: asked, displaced: open, shapes: all };
+        return Attribution { named: asked, displaced: open, shapes: all };
     }
     // Several effects together can imitate one shape, so the shapes without these effects are compared first.
     let none = named_structures.shapes(&asked);
     if is_better(&none, &all) {
-        return named_structures.with_names(Location { named: asked, displaced: open, shapes: none });
+        return named_structures.with_names(Attribution { named: asked, displaced: open, shapes: none });
     }
-    let mut current = Location { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
+    let mut current = Attribution { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
     while let Some(next) = named_structures.without_name(&current, &none, is_asked) {
         current = next;
     }
     // Named effects with shapes must also explain more than a random moment without either.
     let [random, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.power]);
-    if current.is_located() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN_NATS {
-        return Location { named: asked, displaced: open, shapes: none };
+    if current.has_significant_shapes() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN_NATS {
+        return Attribution { named: asked, displaced: open, shapes: none };
     }
     current
 }
@@ -90,7 +91,7 @@ pub fn locate(
 /// `true` if the residual without an effect is explained better than with it: by shapes with a gain above
 /// [`MAX_EQUIVALENT_GAIN_NATS`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
-    let is_shape = without.as_ref().is_some_and(ShapeAnalysis::is_located);
+    let is_shape = without.as_ref().is_some_and(ShapeAnalysis::has_significant_shapes);
     let power = without.as_ref().map_or(1.0, |shapes| shapes.power);
     power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN_NATS } else { 0.0 }
 }
@@ -102,7 +103,7 @@ fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
 
 impl NamedStructures<'_> {
     /// Adds dropped effects again as long as they improve the criterion in addition to the shapes.
-    fn with_names(&self, mut current: Location) -> Location {
+    fn with_names(&self, mut current: Attribution) -> Attribution {
         loop {
             let with = (0..current.displaced.len()).map(|place| {
                 let named = [current.named.as_slice(), &current.displaced[place..=place]].concat();
@@ -120,20 +121,20 @@ impl NamedStructures<'_> {
         }
     }
 
-    /// Location without the effect that shapes replace best; `None` if they replace none. `none` is the shape
+    /// Attribution without the effect that shapes replace best; `None` if they replace none. `none` is the shape
     /// analysis without any of the open effects.
     fn without_name(
         &self,
-        current: &Location,
+        current: &Attribution,
         none: &Option<ShapeAnalysis>,
         is_asked: impl Fn(&EffectNaming) -> bool,
-    ) -> Option<Location> {
+    ) -> Option<Attribution> {
         let open: Vec<usize> = (0..current.named.len()).filter(|&place| !is_asked(&current.named[place])).collect();
         let without = open.iter().map(|&place| {
             let mut named = current.named.clone();
             let effect = named.remove(place);
             let shapes = if open.len() == 1 { none.clone() } else { self.shapes(&named) };
-            Location { named, displaced: [current.displaced.as_slice(), &[effect]].concat(), shapes }
+            Attribution { named, displaced: [current.displaced.as_slice(), &[effect]].concat(), shapes }
         });
         let lowest = without.min_by(|a, b| criterion(&a.shapes).total_cmp(&criterion(&b.shapes)));
         lowest.filter(|next| is_better(&next.shapes, &current.shapes))
@@ -178,7 +179,7 @@ impl NamedStructures<'_> {
             return Some(fit.clone());
         }
         let best = weighed().next()?;
-        let (mut terms, mut theta) = (Vec::new(), best.theta[..best.structure.base_count()].to_vec());
+        let (mut terms, mut theta) = (Vec::new(), best.theta[..best.structure.base_parameter_count()].to_vec());
         let fits = || weighed().chain([&self.full.fit]);
         // In the order in which the rudder passes through them.
         let mut candidates: Vec<&Arc<Term>> = Vec::new();
@@ -197,8 +198,8 @@ impl NamedStructures<'_> {
         if terms.len() != names.len() {
             return None;
         }
-        let weights = self.problem.weights(&self.full.law);
+        let whitening = self.problem.whitening(&self.full.law);
         let structure = best.structure.with_terms(terms);
-        Some(self.problem.fit(&structure, theta, best.initial.clone(), &weights, StoppingRule::FINE))
+        Some(self.problem.fit(&structure, theta, best.initial.clone(), &whitening, StoppingRule::FINE))
     }
 }

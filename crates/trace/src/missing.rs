@@ -20,8 +20,9 @@ impl Analysis {
     /// without an instant, fitted alone with the base, the most probable first.
     pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
         let structure = Structure::base(self.problem.records.len(), self.problem.time);
-        let weights = self.problem.weights(&self.full.law);
-        let initial: Vec<[f64; 2]> = self.identification.iter().map(|fitted| fitted.before.replay.initial()).collect();
+        let whitening = self.problem.whitening(&self.full.law);
+        let initial: Vec<[f64; 2]> =
+            self.identification.iter().map(|fitted| fitted.before.replay.initial_state()).collect();
         let theta = |values: &mut dyn Iterator<Item = f64>| start_point(&structure, &self.base.response, values);
         let base = self.problem.residual(&structure, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
@@ -34,7 +35,7 @@ impl Analysis {
                 let structure = structure.with_terms(vec![Arc::clone(term)]);
                 let mut values = term.priors.iter().map(|prior: &Prior| prior.mean);
                 let fit =
-                    self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, StoppingRule::COARSE);
+                    self.problem.fit(&structure, theta(&mut values), initial.clone(), &whitening, StoppingRule::COARSE);
                 (term.name(), fit.residual)
             })
             .collect();

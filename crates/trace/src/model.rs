@@ -87,7 +87,7 @@ impl ModelParameter {
 #[derive(Debug, Clone)]
 pub struct Structure {
     /// Number of records.
-    pub records: usize,
+    pub record_count: usize,
     /// Ship time L/U, s.
     pub time: f64,
     /// Terms, in the order in which the rudder passes through them.
@@ -96,8 +96,8 @@ pub struct Structure {
 
 impl Structure {
     /// Base alone, for a number of records and L/U = `time` (s).
-    pub fn base(records: usize, time: f64) -> Self {
-        Self { records, time, terms: Vec::new() }
+    pub fn base(record_count: usize, time: f64) -> Self {
+        Self { record_count, time, terms: Vec::new() }
     }
 
     /// Structure of the same base with other terms.
@@ -108,22 +108,22 @@ impl Structure {
 
     /// Number of deviations of the rudder bias: one per record if there are several.
     fn deviations(&self) -> usize {
-        if self.records > 1 { self.records } else { 0 }
+        if self.record_count > 1 { self.record_count } else { 0 }
     }
 
     /// Number of parameters of the base.
-    pub fn base_count(&self) -> usize {
+    pub fn base_parameter_count(&self) -> usize {
         BASE_PARAMETER_COUNT + self.deviations()
     }
 
     /// Number of entries of θ.
-    pub fn count(&self) -> usize {
-        self.base_count() + self.terms.iter().map(|term| term.priors.len()).sum::<usize>()
+    pub fn parameter_count(&self) -> usize {
+        self.base_parameter_count() + self.terms.iter().map(|term| term.priors.len()).sum::<usize>()
     }
 
     /// Ranges of the parameters of the terms in θ.
     pub fn term_ranges(&self) -> Vec<Range<usize>> {
-        let mut start = self.base_count();
+        let mut start = self.base_parameter_count();
         let range = |term: &Arc<Term>| {
             let range = start..start + term.priors.len();
             start = range.end;
@@ -164,7 +164,7 @@ impl Structure {
 
     /// Index of the unknown of every entry of θ; `None` for a fixed entry.
     pub fn unknown_indices(&self) -> Vec<Option<usize>> {
-        let mut unknowns = vec![None; self.count()];
+        let mut unknowns = vec![None; self.parameter_count()];
         self.fitted_indices().into_iter().enumerate().for_each(|(unknown, place)| unknowns[place] = Some(unknown));
         unknowns
     }
@@ -172,7 +172,7 @@ impl Structure {
     /// Covariance of all entries of θ from the covariance of the fitted entries; zero for fixed entries.
     pub fn expanded_covariance(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
         let places = self.fitted_indices();
-        let mut all = DMatrix::zeros(self.count(), self.count());
+        let mut all = DMatrix::zeros(self.parameter_count(), self.parameter_count());
         for (i, &row) in places.iter().enumerate() {
             for (j, &column) in places.iter().enumerate() {
                 all[(row, column)] = fitted[(i, j)];
@@ -191,7 +191,7 @@ impl Structure {
         entry.record_index.is_none_or(|number| number == record)
     }
 
-    /// Entries of θ that are given relative to another one: index, index of the reference.
+    /// Entries of θ that are given relative to another entry: index, index of the reference.
     fn relative(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.terms.iter().zip(self.term_ranges()).flat_map(|(term, range)| {
             let reference = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.reference?));
@@ -199,7 +199,7 @@ impl Structure {
         })
     }
 
-    /// Physical values of the parameters: an entry relative to another one is added to it.
+    /// Physical values of the parameters: the reference of a relative entry is added to the entry.
     pub fn physical<R: EffectReal>(&self, theta: &[R]) -> Vec<R> {
         let mut values = theta.to_vec();
         self.relative().for_each(|(place, other)| values[place] = theta[place] + theta[other]);
@@ -233,7 +233,7 @@ impl Structure {
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             values[2] += theta[BASE_PARAMETER_COUNT + record];
         }
-        (Self { records: 1, time: self.time, terms }, values)
+        (Self { record_count: 1, time: self.time, terms }, values)
     }
 
     /// `true` if a term applies to a fitted record, or to any other record (`None`).
@@ -256,8 +256,8 @@ impl Structure {
     }
 }
 
-/// Maximum solver step (s) between two times (s), for rows `spacing` seconds apart and `steps` steps per minimum time
-/// constant.
+/// Maximum solver step (s) as a function of the two times (s) between which it applies, for rows `spacing` seconds
+/// apart and `steps` steps per minimum time constant.
 pub fn solver_step<R: Real, S: Replayable<R> + ?Sized>(
     ship: &S,
     spacing: f64,
@@ -314,7 +314,7 @@ mod tests {
             };
             let terms: Vec<_> = of_time.iter().chain([&damping]).map(term).collect();
             let structure = Structure::base(records, 13.0).with_terms(terms);
-            let theta: Vec<f64> = (0..structure.count()).map(|place| 0.01 * (1 + place) as f64).collect();
+            let theta: Vec<f64> = (0..structure.parameter_count()).map(|place| 0.01 * (1 + place) as f64).collect();
             let last = theta[theta.len() - 1];
             let (alone, values) = structure.for_record(None, &theta);
             for ship in [structure.response(None, &theta), alone.response(None, &values)] {

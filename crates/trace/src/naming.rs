@@ -38,7 +38,7 @@ impl EffectNaming {
 /// Identifier of an effect with the index of its record; `None` for all records.
 type EffectKey = (&'static str, Option<usize>);
 
-/// Named effects, the most probable first: above the threshold, requested, or in a group above it.
+/// Named effects: single effects that are above the threshold or required, the most probable first, then groups.
 pub fn named_effects(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<EffectNaming> {
     let mut keys: Vec<(EffectKey, f64)> = Vec::new();
     for name in structures.probabilities.keys() {

@@ -24,23 +24,23 @@ use crate::record::PreparedRecord;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CorrelatedNoise {
     /// White yaw moment: r' = −a r + w.
-    White,
+    WhiteMoment,
     /// Gusts: r' = −a r + d, d' = −d/τ + w, with τ by its index in [`GUST_CORRELATION_SHARES`].
     OrnsteinUhlenbeck(usize),
     /// Random-walk moment: r' = −a r + d, d' = w.
-    Walk,
+    WalkMoment,
     /// Compass error ε added to the heading: ε' = −ε/τ + w, with τ by its index in [`COMPASS_CORRELATION_SHARES`].
-    Compass(usize),
+    CompassError(usize),
     /// Smooth model error ε added to the heading: ε'' + 2ε'/τ + ε/τ² = w, with τ by its index in
     /// [`SMOOTH_ERROR_CORRELATION_SHARES`].
-    Smooth(usize),
+    SmoothError(usize),
     /// Smooth moment of unknown shape (Matérn 3/2): r' = −a r + d, d'' + 2d'/τ + d/τ² = w, with τ by its index in
     /// [`SMOOTH_MOMENT_CORRELATION_SHARES`].
     SmoothMoment(usize),
 }
 
-/// Maximum relative change of a stationary Kalman gain. The choice of structures near a tie can depend on the last
-/// digits, so this value reproduces published traces.
+/// Maximum relative change of a stationary Kalman gain. Published traces were computed with this value; near a tie, the
+/// choice of structures can depend on the last digits.
 const GAIN_TOLERANCE: f64 = 1e-9;
 
 /// Correlation times of gusts, as shares of the longest record.
@@ -66,31 +66,31 @@ impl CorrelatedNoise {
     /// [`smooth_moments`](Self::smooth_moments) are not among them.
     pub fn all() -> impl Iterator<Item = Self> {
         let gusts = (0..GUST_CORRELATION_SHARES.len()).map(Self::OrnsteinUhlenbeck);
-        let compass = (0..COMPASS_CORRELATION_SHARES.len()).map(Self::Compass);
-        [Self::White, Self::Walk]
+        let compass = (0..COMPASS_CORRELATION_SHARES.len()).map(Self::CompassError);
+        [Self::WhiteMoment, Self::WalkMoment]
             .into_iter()
             .chain(gusts)
             .chain(compass)
-            .chain((0..SMOOTH_ERROR_CORRELATION_SHARES.len()).map(Self::Smooth))
+            .chain((0..SMOOTH_ERROR_CORRELATION_SHARES.len()).map(Self::SmoothError))
     }
 
     /// `true` for an error of the heading, `false` for a yaw moment.
     pub fn is_heading_error(self) -> bool {
-        matches!(self, Self::Compass(_) | Self::Smooth(_))
+        matches!(self, Self::CompassError(_) | Self::SmoothError(_))
     }
 
     /// Number of parameters: the level, and the correlation time of coloured noise.
     pub fn parameter_count(self) -> usize {
-        if matches!(self, Self::White | Self::Walk) { 1 } else { 2 }
+        if matches!(self, Self::WhiteMoment | Self::WalkMoment) { 1 } else { 2 }
     }
 
     /// Correlation time (s) for a longest record of `longest` seconds; `None` for a white moment and a walk.
     pub fn correlation_time(self, longest: f64) -> Option<f64> {
         match self {
-            Self::White | Self::Walk => None,
+            Self::WhiteMoment | Self::WalkMoment => None,
             Self::OrnsteinUhlenbeck(number) => Some(GUST_CORRELATION_SHARES[number] * longest),
-            Self::Compass(number) => Some(COMPASS_CORRELATION_SHARES[number] * longest),
-            Self::Smooth(number) => Some(SMOOTH_ERROR_CORRELATION_SHARES[number] * longest),
+            Self::CompassError(number) => Some(COMPASS_CORRELATION_SHARES[number] * longest),
+            Self::SmoothError(number) => Some(SMOOTH_ERROR_CORRELATION_SHARES[number] * longest),
             Self::SmoothMoment(number) => Some(SMOOTH_MOMENT_CORRELATION_SHARES[number] * longest),
         }
     }
@@ -100,11 +100,11 @@ impl CorrelatedNoise {
     pub fn intensity(self, longest: f64) -> f64 {
         let white = 3.0 / longest.powi(3);
         match self {
-            Self::White => white,
+            Self::WhiteMoment => white,
             Self::OrnsteinUhlenbeck(number) => white / (GUST_CORRELATION_SHARES[number] * longest).powi(2),
-            Self::Walk => 20.0 / longest.powi(5),
-            Self::Compass(number) => 2.0 / (COMPASS_CORRELATION_SHARES[number] * longest),
-            Self::Smooth(number) => 4.0 / (SMOOTH_ERROR_CORRELATION_SHARES[number] * longest).powi(3),
+            Self::WalkMoment => 20.0 / longest.powi(5),
+            Self::CompassError(number) => 2.0 / (COMPASS_CORRELATION_SHARES[number] * longest),
+            Self::SmoothError(number) => 4.0 / (SMOOTH_ERROR_CORRELATION_SHARES[number] * longest).powi(3),
             Self::SmoothMoment(number) => 4.0 / (SMOOTH_MOMENT_CORRELATION_SHARES[number] * longest).powi(3),
         }
     }
@@ -115,7 +115,7 @@ impl CorrelatedNoise {
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
         match (self, self.correlation_time(longest)) {
-            (Self::Smooth(_) | Self::SmoothMoment(_), _) => level.sqrt(),
+            (Self::SmoothError(_) | Self::SmoothMoment(_), _) => level.sqrt(),
             (_, Some(time)) => (0.5 * time * square).sqrt(),
             (_, None) => square.sqrt(),
         }
@@ -125,12 +125,12 @@ impl CorrelatedNoise {
     fn generator(self, damping: f64, longest: f64) -> DMatrix<f64> {
         let fading = self.correlation_time(longest).map_or(0.0, f64::recip);
         match self {
-            Self::White => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -damping]),
-            Self::OrnsteinUhlenbeck(_) | Self::Walk => {
+            Self::WhiteMoment => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -damping]),
+            Self::OrnsteinUhlenbeck(_) | Self::WalkMoment => {
                 DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, -damping, 1.0, 0.0, 0.0, -fading])
             }
-            Self::Compass(_) => DMatrix::from_element(1, 1, -fading),
-            Self::Smooth(_) => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -fading * fading, -2.0 * fading]),
+            Self::CompassError(_) => DMatrix::from_element(1, 1, -fading),
+            Self::SmoothError(_) => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -fading * fading, -2.0 * fading]),
             Self::SmoothMoment(_) => {
                 let rows = [[0.0, 1.0, 0.0, 0.0], [0.0, -damping, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
                 let last = [0.0, 0.0, -fading * fading, -2.0 * fading];
@@ -161,13 +161,13 @@ impl NoiseColour {
     }
 
     /// Random moment of a record with white noise of this variance (rad²), as rudder angle for |K/T| = `gain` (1/s²)
-    /// and a longest record of `longest` seconds.
+    /// and a longest record of `longest` seconds; [`RandomMoment::None`] for a heading error or a smooth moment.
     pub fn moment(&self, variance: f64, longest: f64, gain: f64) -> RandomMoment {
         let Some((kind, level)) = self.correlated else { return RandomMoment::None };
         let size = kind.size(level * variance, longest) / gain;
         match (kind, kind.correlation_time(longest)) {
-            (CorrelatedNoise::White, _) => RandomMoment::White { rudder_rad_root_s: size },
-            (CorrelatedNoise::Walk, _) => RandomMoment::Walk { rudder_rad_per_root_s: size },
+            (CorrelatedNoise::WhiteMoment, _) => RandomMoment::White { rudder_rad_root_s: size },
+            (CorrelatedNoise::WalkMoment, _) => RandomMoment::Walk { rudder_rad_per_root_s: size },
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(correlation_s)) => {
                 RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: size, correlation_s }
             }
@@ -193,7 +193,7 @@ impl NoiseTransition {
         let intensity = kind.intensity(longest);
         let generator = kind.generator(inverse_time, longest);
         let initial = match (kind, kind.correlation_time(longest)) {
-            (CorrelatedNoise::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0, 0.0],
+            (CorrelatedNoise::SmoothError(_), Some(time)) => [1.0, time.powi(-2), 0.0, 0.0],
             (CorrelatedNoise::SmoothMoment(_), Some(time)) => [0.0, 0.0, 1.0, time.powi(-2)],
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity, 0.0],
             (_, Some(time)) => [0.5 * time * intensity, 0.0, 0.0, 0.0],

@@ -14,8 +14,8 @@ use trial::Trial;
 use crate::analysis::Analysis;
 use crate::fit::FittedRecords;
 use crate::model::Term;
+use crate::noise_law::NoiseLaw;
 use crate::record::PreparedRecord;
-use crate::weights::NoiseLaw;
 
 /// Minimum expected visibility (squared coefficient over its variance) of a distinguishable effect.
 const MIN_VISIBILITY: f64 = 20.0;
@@ -23,7 +23,7 @@ const MIN_VISIBILITY: f64 = 20.0;
 /// Value of a planned trial: the aliases it would separate and the effects it would reveal. Effects are named with
 /// their form: "wind moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prospect {
+pub struct PlannedTrialValue {
     /// Name of the manoeuvre.
     pub name: String,
     /// Pairs (named effect, alias) that the records and this trial together would separate.
@@ -44,15 +44,15 @@ impl Analysis {
     ///
     /// A planned trial is a simulated record of the fitted ship. Of its headings only the first value and the times are
     /// used.
-    pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
-        let mut prospects: Vec<Prospect> =
-            planned.par_iter().filter_map(|(name, trial)| self.prospect(name, trial)).collect();
-        let rank = |prospect: &Prospect| prospect.separated.len() + prospect.revealed.len();
-        prospects.sort_by(|a, b| rank(b).cmp(&rank(a)).then(b.information.total_cmp(&a.information)));
-        prospects
+    pub fn planned_trial_values(&self, planned: &[(String, Trial)]) -> Vec<PlannedTrialValue> {
+        let mut values: Vec<PlannedTrialValue> =
+            planned.par_iter().filter_map(|(name, trial)| self.planned_trial_value(name, trial)).collect();
+        let rank = |value: &PlannedTrialValue| value.separated.len() + value.revealed.len();
+        values.sort_by(|a, b| rank(b).cmp(&rank(a)).then(b.information.total_cmp(&a.information)));
+        values
     }
 
-    fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
+    fn planned_trial_value(&self, name: &str, trial: &Trial) -> Option<PlannedTrialValue> {
         let visibility = self.visibility_with(trial)?;
         let is_visible = |label: &String| visibility.iter().any(|(name, x)| name == label && *x > MIN_VISIBILITY);
         let pair = |effect: &EffectEntry, other: &TermEntry| {
@@ -68,7 +68,7 @@ impl Analysis {
         });
         let (revealed, unobservable) = hidden.partition(is_visible);
         let information = visibility.iter().map(|(_, visibility)| visibility.ln_1p()).sum();
-        Some(Prospect { name: name.to_owned(), separated, inseparable, revealed, unobservable, information })
+        Some(PlannedTrialValue { name: name.to_owned(), separated, inseparable, revealed, unobservable, information })
     }
 
     /// Expected visibility of every candidate of the ship from the records and another trial; `None` if the
@@ -81,7 +81,7 @@ impl Analysis {
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
-        let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal_equations(&problem.weights(&law));
+        let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal_equations(&problem.whitening(&law));
         let fitted = full.record_covariance(None)?.try_inverse()?;
         let count = fitted.nrows();
         let mut precision = normal.matrix;

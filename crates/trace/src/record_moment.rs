@@ -1,5 +1,5 @@
 //! Replay error after fitting a moment of the record in addition to its initial state: a constant moment (rudder bias)
-//! or a slow moment. The decrease can be due to weather or trim of that record.
+//! or a slow moment. Weather or trim of that record can explain the decrease of the error.
 //!
 //! A moment is an equivalent rudder angle, added to the rudder. The base is linear in it, so one least-squares solution
 //! is exact. For an average, Gauss–Newton steps use the responses of the base.
@@ -97,7 +97,7 @@ impl<'a> RecordMoment<'a> {
                 let next = std::array::from_fn(|k| moment[k] + share * step[k]);
                 let Some(rudder) = self.rudder(next) else { break };
                 record.rudder = rudder;
-                let replayed = average.replay(&record, &[best.initial()], ReplayDepth::Heading);
+                let replayed = average.replay(&record, &[best.initial_state()], ReplayDepth::Heading);
                 let Some(replay) = replayed.filter(|all| !all.is_divergent()).map(|all| all.replay) else { break };
                 if replay.rms() < error {
                     (error, best, moment) = (replay.rms(), replay, next);

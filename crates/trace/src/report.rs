@@ -18,7 +18,7 @@ use crate::candidates::{PRIOR_PROBABILITY, PRIOR_PROBABILITY_TIME_MOMENT, is_bar
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::{FittedRecords, StructureFit};
 use crate::full::FullModel;
-use crate::location::Location;
+use crate::location::Attribution;
 use crate::model::{ModelParameter, Term, TermName};
 use crate::naming::EffectNaming;
 use crate::record::PreparedRecord;
@@ -28,7 +28,7 @@ use crate::sentences;
 use crate::settings::Settings;
 use crate::structures::Structures;
 
-mod left;
+mod disturbance_and_shapes;
 mod prior_odds;
 
 /// Results of the stages of a trace.
@@ -43,7 +43,7 @@ pub struct TraceParts<'a> {
     pub full: &'a FullModel,
     /// Structures with their probabilities.
     pub structures: &'a Structures,
-    /// Candidates.
+    /// Candidate terms.
     pub candidates: &'a [Arc<Term>],
     /// Comparisons on fitted records.
     pub identification: &'a [RecordComparison],
@@ -54,7 +54,7 @@ pub struct TraceParts<'a> {
     /// Residual analysis.
     pub residual_analysis: &'a ResidualAnalysis,
     /// Named effects and shapes.
-    pub location: &'a Location,
+    pub attribution: &'a Attribution,
     /// Times of the removed compass outliers of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
     /// Measurement error of the rudder of every fitted record; `None` without one.
@@ -77,7 +77,7 @@ impl TraceParts<'_> {
     /// Document of the trace.
     pub fn document(&self) -> Document {
         let selection = &self.settings.selection;
-        let mut named = self.location.named.clone();
+        let mut named = self.attribution.named.clone();
         named.retain(|naming| self.residual_analysis.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
         let residual_peak = self.residual_analysis.residual_peak.as_ref();
@@ -105,7 +105,7 @@ impl TraceParts<'_> {
                 candidates: self.candidates.len(),
                 probability: PRIOR_PROBABILITY,
                 probability_of_time: PRIOR_PROBABILITY_TIME_MOMENT,
-                named_from: self.settings.probability,
+                named_from: self.settings.min_probability,
                 odds_factors: prior_odds::PRIOR_ODDS_FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
@@ -137,7 +137,7 @@ impl TraceParts<'_> {
 
     /// Verdict of the trace, the first that holds.
     fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> Verdict {
-        match (self.location.is_located(), is_unnamed, is_disturbed) {
+        match (self.attribution.has_significant_shapes(), is_unnamed, is_disturbed) {
             _ if self.residual_analysis.is_unexplained => Verdict::Unexplained,
             (true, ..) => Verdict::Located,
             (_, false, _) => Verdict::Traced,
@@ -239,7 +239,7 @@ impl TraceParts<'_> {
     fn effects(&self, named: &[EffectNaming]) -> Vec<EffectEntry> {
         let entry = |naming: &EffectNaming| {
             let (id, form, record) = naming.term;
-            let support = self.structures.effect_evidence(id, record);
+            let evidence = self.structures.effect_evidence(id, record);
             let mut aliases: Vec<String> = naming.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
             aliases.dedup();
             let alias_forms = naming.aliases.iter().chain(&naming.forms).map(|name| self.term(*name)).collect();
@@ -254,9 +254,9 @@ impl TraceParts<'_> {
                 parameters: self.term_parameters(naming.term),
                 probability: naming.probability,
                 probability_by_prior_odds: self.by_prior_odds(|name| naming.includes(name)),
-                delta_bic: -2.0 * support.log_ratio,
-                p_value: support.p_value,
-                evidence: sentences::evidence(naming, support.log_ratio, asked, self.trials),
+                delta_bic: -2.0 * evidence.log_ratio,
+                p_value: evidence.p_value,
+                evidence: sentences::evidence(naming, evidence.log_ratio, asked, self.trials),
                 aliases,
             }
         };
@@ -347,14 +347,14 @@ impl TraceParts<'_> {
         } else {
             Outcome::Rejected
         };
-        let support = self.structures.support.get(&name);
+        let evidence = self.structures.evidence.get(&name);
         FormEntry {
             form: form.into(),
             only: self.record_name(record),
             outcome,
             probability: self.structures.probabilities.get(&name).map_or(0.0, |weight| weight.clamp(0.0, 1.0)),
-            delta_bic: support.map(|support| -2.0 * support.log_ratio.clamp(-1e6, 1e6)),
-            p_value: support.map(|support| support.p_value),
+            delta_bic: evidence.map(|evidence| -2.0 * evidence.log_ratio.clamp(-1e6, 1e6)),
+            p_value: evidence.map(|evidence| evidence.p_value),
             visibility,
         }
     }
@@ -374,16 +374,16 @@ impl TraceParts<'_> {
         self.structures.all.iter().take(MAX_LISTED).enumerate().map(entry).collect()
     }
 
-    fn errors(&self) -> ErrorEntry {
-        let entry = |(trial, comparison): (&Trial, &RecordComparison)| BeforeAfter {
+    fn errors(&self) -> ReplayErrorLists {
+        let entry = |(trial, comparison): (&Trial, &RecordComparison)| RecordReplayErrors {
             file: sentences::record_label(trial),
             before: (&comparison.before).into(),
             after: (&comparison.after).into(),
             horizons: Vec::new(),
         };
-        let unfitted = |(trial, on)| BeforeAfter { horizons: RecordComparison::horizons(on), ..entry((trial, on)) };
+        let unfitted = |(run, on)| RecordReplayErrors { horizons: RecordComparison::horizons(on), ..entry((run, on)) };
         let folds = self.trials.iter().zip(self.leave_one_out).filter_map(|(run, fold)| Some((run, fold.as_ref()?)));
-        ErrorEntry {
+        ReplayErrorLists {
             kept_base: match (self.residual_analysis.is_credible, self.keeps_base) {
                 (false, _) => Some(sentences::NO_NAMED_EFFECT_REASON.into()),
                 (true, keeps_base) => keeps_base.then(|| sentences::KEPT_BASE_REASON.into()),
@@ -428,8 +428,9 @@ impl TraceParts<'_> {
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading
                     .and_then(|(law, _)| law.correlation_time(self.problem.longest_duration())),
-                heading_wander: heading
-                    .map(|_| if law.includes_model_error() { HeadingWander::Model } else { HeadingWander::Compass }),
+                heading_wander: heading.map(|_| {
+                    if law.includes_model_error() { HeadingErrorKind::Model } else { HeadingErrorKind::Compass }
+                }),
                 moment: kind,
                 moment_sd_rudder_deg: (!noise.moment.is_none()).then(|| to_deg(noise.moment.size())),
                 moment_correlation_s: correlation,

@@ -6,13 +6,13 @@ use trial::Trial;
 use crate::comparison::{RecordComparison, ReplayResult};
 use crate::fit::FittedRecords;
 use crate::full::FullModel;
-use crate::location::Location;
+use crate::location::Attribution;
+use crate::noise_law::NoiseLaw;
 use crate::record::PreparedRecord;
 use crate::replay_errors::ReplayErrors;
 use crate::residual_peak::{ResidualPeak, residual_peak};
 use crate::rudder::RudderNoise;
 use crate::structures::Structures;
-use crate::weights::NoiseLaw;
 
 /// Sums of squared heading errors over all records, rad²: base, average.
 pub fn heading_error_squares(all: &[RecordComparison]) -> [f64; 2] {
@@ -27,7 +27,7 @@ pub fn heading_error_squares(all: &[RecordComparison]) -> [f64; 2] {
 pub struct Innovations {
     /// Times of the innovations, s.
     pub time: Vec<f64>,
-    /// Usual sampling period, s.
+    /// Usual time between rows, s.
     pub spacing: f64,
     /// Innovations in standard deviations.
     pub values: Vec<f64>,
@@ -69,7 +69,7 @@ impl ResidualAnalysis {
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
-        location: &Location,
+        attribution: &Attribution,
         rudder_noises: &[Option<RudderNoise>],
     ) -> Self {
         let Some(best) = structures.all.first() else {
@@ -84,17 +84,20 @@ impl ResidualAnalysis {
         let white =
             full.law.variance.iter().zip(&problem.records).map(|(row, record)| row * record.full_readings as f64);
         let is_small = after / rows < MIN_UNEXPLAINED_SD * MIN_UNEXPLAINED_SD * white.fold(0.0, f64::max);
-        let shapes = location.shapes.as_ref();
+        let shapes = attribution.shapes.as_ref();
         let is_chance = match shapes {
-            Some(all) if all.is_located() || !is_noise => are_noise(&with_values(innovations, &all.innovations)),
+            Some(all) if all.has_significant_shapes() || !is_noise => {
+                are_noise(&with_values(innovations, &all.innovations))
+            }
             _ => is_noise,
         };
         let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
         let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
         // In a calm there is no random yaw moment, so an estimated random moment is unexplained.
-        let is_calm = location.unexplained_random_moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
+        let is_calm =
+            attribution.unexplained_random_moment(rudder_noises).is_some() && trials.iter().all(Trial::is_calm);
         let is_unexplained = is_large && (is_smooth || !is_chance) || is_calm;
-        let is_left = is_unexplained || location.is_located() || is_large && !is_noise;
+        let is_left = is_unexplained || attribution.has_significant_shapes() || is_large && !is_noise;
         let residual_peak = is_left.then(|| largest_residual_peak(identification, trials)).flatten();
         Self { is_noise, is_credible, is_unexplained, residual_peak }
     }
@@ -121,10 +124,10 @@ pub const SIGNIFICANCE_LEVEL: f64 = 1e-4;
 
 /// Normalised innovations of all records: their residuals (rad) whitened under a law.
 pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Vec<Innovations> {
-    let weights = problem.weights(law);
+    let whitening = problem.whitening(law);
     let whitened = |(number, (record, residual)): (usize, (&PreparedRecord, &Vec<f64>))| {
         let mut values = residual.clone();
-        weights.apply(number, &mut [&mut values]);
+        whitening.apply(number, &mut [&mut values]);
         let time = record.observed.iter().map(|&row| record.time[row]).collect();
         Innovations { time, spacing: record.spacing, values }
     };

@@ -7,7 +7,7 @@ use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 pub struct ResidualPeak {
     /// Index of the record.
     pub record_index: usize,
-    /// Window of 1/8 of the record (s) with the largest sum of squares, and its share of the total.
+    /// First and last time (s) of the eighth of the rows with the largest sum of squares, and its share of the total.
     pub span: ([f64; 2], f64),
     /// Strongest line of the spectrum; `None` for fewer than four headings, or if nearly all of the record is gaps.
     pub line: Option<SpectralLine>,

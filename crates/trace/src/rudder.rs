@@ -30,7 +30,7 @@ use crate::fit::FittedRecords;
 use crate::full::FullModel;
 use crate::law;
 use crate::noise::CorrelatedNoise;
-use crate::weights::NoiseLaw;
+use crate::noise_law::NoiseLaw;
 use pieces::RudderPiece;
 
 /// Ratio of the standard deviation to the median absolute value of the normal law.
@@ -49,7 +49,7 @@ const MAX_AUTOCORRELATION: f64 = 0.15;
 /// Number of lags at which the autocorrelation is checked.
 const LAGS: usize = 10;
 
-/// Maximum gain in log likelihood of the recorded rudder; above it the recorded rudder is kept.
+/// Gain in log likelihood of the recorded over the estimated rudder above which the recorded rudder is kept.
 const MIN_GAIN: f64 = 2.0;
 
 /// Unit of the search for a common divisor of the angles, deg.
@@ -180,10 +180,10 @@ fn log_likelihood(trial: &Trial) -> Option<f64> {
 /// Minimum decrease of the criterion by another noise law that is kept in addition to the rudder noise.
 const MIN_CRITERION_DECREASE: f64 = 10.0;
 
-/// Full models whose noise laws contain at least the rudder noise.
+/// Full models with noise laws that contain at least the rudder noise, as a white moment.
 ///
-/// The rudder noise is a white moment; another law replaces it only if it explains the records far better. `gain` is
-/// K/T, 1/s².
+/// A law of another kind is kept in addition if its criterion is lower by more than [`MIN_CRITERION_DECREASE`]. Without
+/// rudder noise the models are unchanged. `gain` is K/T, 1/s².
 pub fn with_rudder_noise(
     fulls: Vec<FullModel>,
     problem: &FittedRecords,
@@ -193,7 +193,7 @@ pub fn with_rudder_noise(
     if errors.iter().all(Option::is_none) {
         return fulls;
     }
-    let unit = CorrelatedNoise::White.size(1.0, problem.longest_duration()).powi(2);
+    let unit = CorrelatedNoise::WhiteMoment.size(1.0, problem.longest_duration()).powi(2);
     let least = |law: &NoiseLaw| {
         let intensities = errors.iter().map(|error| error.map_or(0.0, |error| error.intensity));
         let levels = intensities.zip(&law.variance).map(|(rudder, variance)| gain * gain * rudder / (unit * variance));
@@ -201,13 +201,15 @@ pub fn with_rudder_noise(
     };
     let raise = |full: FullModel| {
         let estimate = |kind| law::estimate(problem, &full.fit, &full.law.variance, false, &[kind]);
-        let white = estimate(CorrelatedNoise::White);
-        let kind = full.law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::White);
+        let white = estimate(CorrelatedNoise::WhiteMoment);
+        let kind =
+            full.law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::WhiteMoment);
         let is_other = kind.is_some_and(|kind| estimate(kind).criterion + MIN_CRITERION_DECREASE < white.criterion);
         // The size of waves is relative to the white noise, so a law with waves keeps its variances.
         let mut law = if full.law.colour.waves.is_some() { full.law.clone() } else { white.law };
-        let level = law.colour.correlated.filter(|(kind, _)| *kind == CorrelatedNoise::White).map_or(0.0, |(_, x)| x);
-        law.colour.correlated = Some((CorrelatedNoise::White, level.max(least(&law))));
+        let level =
+            law.colour.correlated.filter(|(kind, _)| *kind == CorrelatedNoise::WhiteMoment).map_or(0.0, |(_, x)| x);
+        law.colour.correlated = Some((CorrelatedNoise::WhiteMoment, level.max(least(&law))));
         let white = FullModel { law, ..full.clone() };
         [Some(white), is_other.then_some(full)]
     };

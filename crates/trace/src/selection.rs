@@ -88,7 +88,7 @@ impl Selection {
         EffectId::find(name).or_else(|| self.formula(name).map(EffectId::from_formula))
     }
 
-    /// Fails for an effect that is both required and excluded, and for two formulas of one name.
+    /// Fails if an effect is both required and excluded, or if two formulas have the same name.
     pub fn check(&self) -> Result<(), SettingsError> {
         let ids: Vec<&str> = self.formulas.iter().map(|formula| formula.id()).collect();
         if let Some(twice) = (1..ids.len()).find(|&place| ids[..place].contains(&ids[place])) {

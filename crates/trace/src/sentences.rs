@@ -1,7 +1,9 @@
 //! Sentences of a trace: headline, evidence, peak of the residual.
 
 use document::names;
-use document::trace::{BeforeAfter, DisturbanceEntry, EffectEntry, ErrorEntry, ErrorsEntry, LocatedEntry, Verdict};
+use document::trace::{
+    DisturbanceEntry, EffectEntry, LocatedMomentEntry, ModelReplayErrors, RecordReplayErrors, ReplayErrorLists, Verdict,
+};
 use ship::angle::to_deg;
 use trial::{RecordOrigin, Trial};
 
@@ -52,7 +54,7 @@ const WINDOW: &str = "60";
 const UNCHANGED_SHARE: f64 = 0.95;
 
 /// Heading errors (deg) of several records, before and after, as root mean squares; `None` if no record has both.
-fn mean_errors(all: &[BeforeAfter], of: impl Fn(&ErrorsEntry) -> Option<f64>) -> Option<[f64; 2]> {
+fn mean_errors(all: &[RecordReplayErrors], of: impl Fn(&ModelReplayErrors) -> Option<f64>) -> Option<[f64; 2]> {
     let pairs: Vec<[f64; 2]> = all.iter().filter_map(|entry| Some([of(&entry.before)?, of(&entry.after)?])).collect();
     let mean = |when: usize| (pairs.iter().map(|pair| pair[when].powi(2)).sum::<f64>() / pairs.len() as f64).sqrt();
     (!pairs.is_empty()).then(|| [mean(0), mean(1)])
@@ -71,18 +73,18 @@ pub struct Headline<'a> {
     /// Named effects.
     pub effects: &'a [EffectEntry],
     /// Replay errors of base and average.
-    pub error: &'a ErrorEntry,
+    pub error: &'a ReplayErrorLists,
     /// Random moment in addition to the named effects; `None` without one.
     pub disturbance: Option<DisturbanceEntry>,
     /// Located shapes.
-    pub located: &'a [LocatedEntry],
+    pub located: &'a [LocatedMomentEntry],
     /// `true` if the reported replays of the average include fitted hulls.
     pub has_hulls: bool,
 }
 
 impl Headline<'_> {
     /// Result in a few sentences: the effects missing from the first-order response, the heading error with and without
-    /// them on fitted and other records, and the remainder.
+    /// them on fitted and unfitted records, and the residual.
     pub fn text(&self) -> String {
         let name = |effect: &EffectEntry| match effect.aliases.is_empty() {
             true => names::effect_form(&effect.id, &effect.form),
@@ -128,7 +130,7 @@ impl Headline<'_> {
             true => (&self.error.leave_one_out, "records left out in turn"),
             false => (&self.error.validation, "held-out records"),
         };
-        let ratios = |of: fn(&ErrorsEntry) -> Option<f64>| {
+        let ratios = |of: fn(&ModelReplayErrors) -> Option<f64>| {
             let fitted = percent(mean_errors(&self.error.identification, of))?;
             let unfitted = percent(mean_errors(errors, of)).map(|ratio| format!("; {kind} {ratio}"));
             Some(fitted + &unfitted.unwrap_or_default())
@@ -166,7 +168,7 @@ impl Headline<'_> {
 
     /// Enumeration of the located shapes, dependence and form, with the first alternative of the clearest.
     fn shapes(&self) -> String {
-        let shape = |located: &LocatedEntry| format!("{} ({})", located.depends_on, located.form);
+        let shape = |located: &LocatedMomentEntry| format!("{} ({})", located.depends_on, located.form);
         let shapes = listed(&self.located.iter().map(shape).collect::<Vec<_>>());
         let alternative = self.located.first().and_then(|clearest| clearest.alternatives.first());
         alternative.map_or_else(|| shapes.clone(), |alternative| format!("{shapes}, or {alternative}"))
@@ -174,7 +176,7 @@ impl Headline<'_> {
 }
 
 /// Heading error of the full replay, deg.
-fn whole(errors: &ErrorsEntry) -> Option<f64> {
+fn whole(errors: &ModelReplayErrors) -> Option<f64> {
     Some(errors.heading_rmse_deg)
 }
 
@@ -267,8 +269,8 @@ mod tests {
     }
 
     /// Errors of the whole replay and of windows of 60 s, before and after.
-    fn record(whole: [f64; 2], window: [Option<f64>; 2]) -> BeforeAfter {
-        let errors = |when: usize| ErrorsEntry {
+    fn record(whole: [f64; 2], window: [Option<f64>; 2]) -> RecordReplayErrors {
+        let errors = |when: usize| ModelReplayErrors {
             heading_rmse_deg: whole[when],
             yaw_rate_rmse_deg_s: None,
             overshoot_error_deg: None,
@@ -278,19 +280,19 @@ mod tests {
             with_own_bias_deg: None,
             with_own_moment_deg: None,
         };
-        BeforeAfter { file: String::new(), before: errors(0), after: errors(1), horizons: Vec::new() }
+        RecordReplayErrors { file: String::new(), before: errors(0), after: errors(1), horizons: Vec::new() }
     }
 
-    fn headline(effects: &[EffectEntry], error: &ErrorEntry) -> String {
+    fn headline(effects: &[EffectEntry], error: &ReplayErrorLists) -> String {
         Headline { verdict: Verdict::Traced, effects, error, disturbance: None, located: &[], has_hulls: false }.text()
     }
 
     #[test]
     fn the_headline_names_effects_and_every_ratio() {
-        let error = ErrorEntry {
+        let error = ReplayErrorLists {
             identification: vec![record([2.0, 0.5], [Some(1.0), Some(0.4)])],
             validation: vec![record([3.0, 1.5], [Some(1.0), Some(0.6)]), record([4.0, 2.0], [None, Some(0.1)])],
-            ..ErrorEntry::default()
+            ..ReplayErrorLists::default()
         };
         let effects = [effect("nonlinear_damping", -94.0), effect("speed_loss", -20.0)];
         assert_eq!(
@@ -304,7 +306,8 @@ mod tests {
     /// A gain in BIC without a smaller replay error is reported as a gain in one-step prediction.
     #[test]
     fn a_gain_that_no_replay_shows_is_one_of_prediction() {
-        let error = ErrorEntry { identification: vec![record([2.0, 2.0], [None; 2])], ..ErrorEntry::default() };
+        let error =
+            ReplayErrorLists { identification: vec![record([2.0, 2.0], [None; 2])], ..ReplayErrorLists::default() };
         assert_eq!(
             headline(&[effect("nonlinear_damping", -94.2)], &error),
             "The first-order response lacks nonlinear damping (r³). This improves the prediction of each heading from \

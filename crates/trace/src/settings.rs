@@ -36,36 +36,36 @@ impl WeightingRule {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Minimum probability of a named effect.
-    pub probability: f64,
+    pub min_probability: f64,
     /// Weighting rule of the structures.
     pub rule: WeightingRule,
     /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all`]).
-    pub monomials: usize,
+    pub monomial_count: usize,
     /// Required and excluded effects, and effects given as formulas.
     pub selection: Selection,
     /// `true` if all errors are computed: restarted replays, yaw rate and overshoots on fitted records, horizons and
     /// fitted moments on held-out records, and leave-one-out folds. A benchmark can skip them.
     pub is_thorough: bool,
     /// `true` if only heading, yaw rate and rudder are used, as in methods without other channels.
-    pub uses_heading_alone: bool,
+    pub uses_minimal_channels: bool,
     /// `true` if hull models of three degrees of freedom are fitted when the residual is more than noise, or when there
-    /// are `earlier` hulls.
+    /// are `earlier_hulls`.
     pub fits_hulls: bool,
     /// Hulls from earlier trials of the ship or a similar one, used as priors of the hull models.
-    pub earlier: Vec<EarlierHull>,
+    pub earlier_hulls: Vec<EarlierHull>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            probability: 0.95,
+            min_probability: 0.95,
             rule: WeightingRule::default(),
-            monomials: 0,
+            monomial_count: 0,
             selection: Selection::default(),
             is_thorough: true,
-            uses_heading_alone: false,
+            uses_minimal_channels: false,
             fits_hulls: false,
-            earlier: Vec::new(),
+            earlier_hulls: Vec::new(),
         }
     }
 }
@@ -73,8 +73,8 @@ impl Default for Settings {
 impl Settings {
     /// Fails if a setting is out of its range.
     pub fn check(&self) -> Result<(), SettingsError> {
-        if !(0.5..1.0).contains(&self.probability) {
-            return Err(SettingsError::new("probability", self.probability, "a number from 0.5 to below 1"));
+        if !(0.5..1.0).contains(&self.min_probability) {
+            return Err(SettingsError::new("probability", self.min_probability, "a number from 0.5 to below 1"));
         }
         self.selection.check()
     }

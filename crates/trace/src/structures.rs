@@ -14,9 +14,9 @@ use crate::candidates::{is_alternative, is_delay};
 use crate::fit::{FittedRecords, StoppingRule, StructureFit};
 use crate::full::FullModel;
 use crate::model::{ModelParameter, Structure, Term, TermName};
+use crate::noise_law::RecordWhitening;
 use crate::selection::Selection;
 use crate::settings::WeightingRule;
-use crate::weights::RecordWhitening;
 use quadratic::{MAX_LOG_ODDS, QuadraticPosterior};
 use result::names;
 
@@ -35,7 +35,7 @@ const ROUNDS: usize = 2;
 /// Search over the structures of one noise law.
 struct StructureSearch<'a> {
     problem: &'a FittedRecords,
-    weights: RecordWhitening,
+    whitening: RecordWhitening,
     full: &'a FullModel,
     variants: Vec<&'a Arc<Term>>,
     selection: &'a Selection,
@@ -43,7 +43,7 @@ struct StructureSearch<'a> {
     /// Evaluated structures by the names of their terms.
     evaluated: BTreeMap<Vec<TermName>, WeighedStructure>,
     visibility: BTreeMap<TermName, f64>,
-    /// Latest approximation, which gives the support of every term.
+    /// Latest approximation, which gives the evidence for every term.
     latest: Option<QuadraticPosterior>,
 }
 
@@ -106,7 +106,7 @@ fn weigh(
 ) -> Structures {
     let mut search = StructureSearch {
         problem,
-        weights: problem.weights(&full.law),
+        whitening: problem.whitening(&full.law),
         full,
         variants: candidates.iter().filter(|term| is_alternative(term.effect.as_ref())).collect(),
         selection,
@@ -130,7 +130,7 @@ fn weigh(
         seen.push(names(&top.structure));
         // Alternatives to a term appear after its removal.
         for out in 0..top.structure.terms.len() {
-            let less = top.refit_without(out, problem, &search.weights, StoppingRule::COARSE);
+            let less = top.refit_without(out, problem, &search.whitening, StoppingRule::COARSE);
             search.screen(&search.full_parameters(&less), &less.initial, &search.terms_of(&less));
             search.store(vec![less]);
         }
@@ -146,7 +146,7 @@ impl StructureSearch<'_> {
     /// structure of this point has.
     fn screen(&mut self, theta: &[f64], initial: &[[f64; 2]], about: &[bool]) {
         let structure = &self.full.fit.structure;
-        let normal = self.problem.normal_equations(structure, theta, initial, &self.weights);
+        let normal = self.problem.normal_equations(structure, theta, initial, &self.whitening);
         let odds: Vec<f64> = structure.terms.iter().map(|term| self.odds(term, 1e6)).collect();
         let Some(quadratic) = QuadraticPosterior::new(&normal, structure, theta, &odds) else { return };
         if self.visibility.is_empty() {
@@ -181,7 +181,7 @@ impl StructureSearch<'_> {
             .into_par_iter()
             .filter(|(model, ..)| !self.evaluated.contains_key(&names(model)))
             .map(|(model, theta, initial)| {
-                self.problem.fit(&model, theta, initial, &self.weights, StoppingRule::COARSE)
+                self.problem.fit(&model, theta, initial, &self.whitening, StoppingRule::COARSE)
             })
             .collect();
         self.store(fits);
@@ -211,7 +211,7 @@ impl StructureSearch<'_> {
             .take(MAX_CONVERGED)
             .map(|WeighedStructure { fit, .. }| {
                 let StructureFit { structure, theta, initial, .. } = fit.clone();
-                self.problem.fit(&structure, theta, initial, &self.weights, StoppingRule::FINE)
+                self.problem.fit(&structure, theta, initial, &self.whitening, StoppingRule::FINE)
             })
             .collect();
         self.store(fits);
@@ -239,7 +239,7 @@ impl StructureSearch<'_> {
                 .map(|(prior, neutral)| prior.sd.powi(2) + (prior.mean - neutral).powi(2))
                 .collect();
             let variance = |k: usize| if quadratic.free[k] { quadratic.covariance[(k, k)] } else { f64::INFINITY };
-            let ratios = removable.sizes.iter().zip(expected).map(|((k, _), square)| square / variance(*k));
+            let ratios = removable.amplitudes.iter().zip(expected).map(|((k, _), square)| square / variance(*k));
             (term.name(), ratios.fold(0.0, f64::max))
         };
         self.full.fit.structure.terms.iter().zip(&quadratic.removable).map(visibility).collect()
@@ -265,7 +265,7 @@ impl StructureSearch<'_> {
         };
         let all: Vec<f64> = structure.entries().into_iter().zip(theta).map(value).collect();
         let initial = initial.iter().map(|_| [next(), next()]).collect();
-        let mut theta = all[..structure.base_count()].to_vec();
+        let mut theta = all[..structure.base_parameter_count()].to_vec();
         let mut terms = Vec::new();
         for ((term, range), _) in
             structure.terms.iter().zip(structure.term_ranges()).zip(chosen).filter(|(_, kept)| **kept)
@@ -299,7 +299,7 @@ impl StructureSearch<'_> {
     /// Parameters of the full model: the parameters of a fit, all other terms neutral.
     fn full_parameters(&self, fit: &StructureFit) -> Vec<f64> {
         let structure = &self.full.fit.structure;
-        let mut theta = fit.theta[..structure.base_count()].to_vec();
+        let mut theta = fit.theta[..structure.base_parameter_count()].to_vec();
         let fitted: BTreeMap<TermName, &[f64]> = fit
             .structure
             .terms
@@ -319,12 +319,12 @@ impl StructureSearch<'_> {
         theta
     }
 
-    /// Structures with their weights, the probabilities of the terms and their support.
+    /// Structures with their weights, and the probabilities, visibilities and evidence of the terms.
     fn result(self) -> Structures {
         let terms = &self.full.fit.structure.terms;
         let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.record_index)).collect();
-        let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
-        let support = terms.iter().map(|term| term.name()).zip(support).collect();
+        let evidence = self.latest.map_or_else(Vec::new, |latest| latest.evidence(&effects));
+        let evidence = terms.iter().map(|term| term.name()).zip(evidence).collect();
         let visibility = self.visibility;
         let mut all: Vec<WeighedStructure> =
             self.evaluated.into_values().filter(|stored| stored.log_posterior.is_finite()).collect();
@@ -342,6 +342,6 @@ impl StructureSearch<'_> {
                 *probabilities.entry(term.name()).or_default() += weighed.weight;
             }
         }
-        Structures { all, probabilities, visibility, support, other_law_structures: Vec::new() }
+        Structures { all, probabilities, visibility, evidence, other_law_structures: Vec::new() }
     }
 }

@@ -9,7 +9,7 @@ use ship::first_order::Transition;
 use crate::fit::{FittedRecords, StructureFit, normal_equations};
 use crate::linear::Linearisation;
 use crate::model::Term;
-use crate::weights::RecordWhitening;
+use crate::noise_law::RecordWhitening;
 
 /// Durations of the boxes as shares of the record.
 const DURATION_SHARES: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
@@ -22,21 +22,21 @@ const STEP_SPACING: f64 = 1.0 / 80.0;
 pub fn start_values(
     problem: &FittedRecords,
     fit: &StructureFit,
-    weights: &RecordWhitening,
+    whitening: &RecordWhitening,
     terms: &[&Term],
 ) -> Vec<Option<Vec<f64>>> {
     let linear = problem.linearise(&fit.structure, &fit.theta, &fit.initial);
-    let normal = normal_equations(&linear, &fit.structure, &fit.theta, weights);
+    let normal = normal_equations(&linear, &fit.structure, &fit.theta, whitening);
     let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
-    let explained = factor.solve(&normal.gradient);
-    terms.iter().map(|term| place(problem, fit, weights, term, &linear, &factor, &explained)).collect()
+    let explained = factor.solve(&normal.right_hand_side);
+    terms.iter().map(|term| place(problem, fit, whitening, term, &linear, &factor, &explained)).collect()
 }
 
 /// Best start values of one moment in addition to a linearised fit, whose Gauss–Newton step is `explained`.
 fn place(
     problem: &FittedRecords,
     fit: &StructureFit,
-    weights: &RecordWhitening,
+    whitening: &RecordWhitening,
     term: &Term,
     linear: &Linearisation,
     factor: &Cholesky<f64, Dyn>,
@@ -44,7 +44,7 @@ fn place(
 ) -> Option<Vec<f64>> {
     let number = term.record_index.unwrap_or(0);
     let record = &problem.records[number];
-    let block = linear.blocks[number].whitened(number, weights);
+    let block = linear.blocks[number].whitened(number, whitening);
     let (a, b) = (fit.theta[0], fit.theta[1]);
     let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let (start, duration) = (record.time[0], record.duration());
@@ -68,7 +68,7 @@ fn place(
                 .iter()
                 .map(|t| b * (step_response(a, t - from) - step_response(a, t - from - box_duration)))
                 .collect();
-            weights.apply(number, &mut [&mut column]);
+            whitening.apply(number, &mut [&mut column]);
             let mut cross = DVector::zeros(linear.unknowns);
             block.products(&column, &mut cross);
             let prior = term.priors[0].sd.powi(-2);

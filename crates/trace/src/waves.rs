@@ -4,7 +4,7 @@ use ship::narrow_band::NarrowBand;
 
 use crate::fit::FittedRecords;
 use crate::noise::NoiseColour;
-use crate::weights::NoiseLaw;
+use crate::noise_law::NoiseLaw;
 
 /// Minimum frequency of waves over the fundamental of the manoeuvre; a lower band is treated as model structure.
 const MIN_FREQUENCY_RATIO: f64 = 5.0;
@@ -30,9 +30,9 @@ pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &Nois
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let evaluate = |colour: &NoiseColour| {
-        let weights = problem.weights(&NoiseLaw { colour: *colour, ..NoiseLaw::white(residual.len(), 1.0) });
-        let rss = weights.misfit(residual);
-        let log_variance: f64 = weights.whiteners.iter().map(|whitener| whitener.log_variance).sum();
+        let whitening = problem.whitening(&NoiseLaw { colour: *colour, ..NoiseLaw::white(residual.len(), 1.0) });
+        let rss = whitening.misfit(residual);
+        let log_variance: f64 = whitening.whiteners.iter().map(|whitener| whitener.log_determinant).sum();
         let n = problem.observations() as f64;
         (n * (rss / n).ln() + log_variance, rss)
     };

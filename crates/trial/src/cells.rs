@@ -87,12 +87,12 @@ fn closing_quote(text: &str) -> Option<usize> {
     Some(at)
 }
 
-/// Text of a quoted cell, with single quotes for doubled ones.
+/// Text of a quoted cell, with each doubled quotation mark written once.
 pub fn unquoted(cell: &str) -> String {
     cell.replace("\"\"", "\"")
 }
 
-/// Most plausible separator of a line: the one with the highest `score` of its cells.
+/// Separator that splits a line into the cells with the highest `score`.
 ///
 /// On a tie, the first in [`Separator::ALL`] that gives more than one cell. [`Separator::Blank`] for a line of one cell
 /// with a score of 0.
@@ -134,8 +134,8 @@ impl CellContent {
     }
 }
 
-/// Content of a cell. A decimal comma is accepted; among comma-separated cells such a cell stood in quotes, and three
-/// digits after its comma make it text, because they may be thousands.
+/// Content of a cell. A decimal comma is accepted. Among comma-separated cells a number with a comma was in quotes;
+/// with three digits after the comma it is text, because the comma may separate thousands.
 ///
 /// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
 /// displays it. Exponents may be written with `D` (Fortran).

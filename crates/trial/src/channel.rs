@@ -67,9 +67,9 @@ pub enum Unit {
     /// `m`
     Metre,
     /// `rpm`, revolutions per minute.
-    PerMinute,
+    RevolutionPerMinute,
     /// `rps`, revolutions per second.
-    PerSecond,
+    RevolutionPerSecond,
 }
 
 /// Every unit in the order of its declaration: suffix of a column name, name in messages, factor to SI units and
@@ -93,8 +93,8 @@ pub(crate) const UNITS: [(Unit, &str, &str, f64, &str); 14] = [
     (Unit::MetrePerSecond, "m_s", "metres per second", 1.0, "m/s, mps, m/sec, ms-1"),
     (Unit::Knot, "kn", "knots", KNOT, "kn, kt, kts, kns, knot, knots, knoten, sm/h, nm/h"),
     (Unit::Metre, "m", "metres", 1.0, "m, metre, metres, meter, meters"),
-    (Unit::PerMinute, "rpm", "revolutions per minute", 1.0 / 60.0, "rpm, 1/min, min-1, u/min"),
-    (Unit::PerSecond, "rps", "revolutions per second", 1.0, "rps, 1/s, s-1, hz"),
+    (Unit::RevolutionPerMinute, "rpm", "revolutions per minute", 1.0 / 60.0, "rpm, 1/min, min-1, u/min"),
+    (Unit::RevolutionPerSecond, "rps", "revolutions per second", 1.0, "rps, 1/s, s-1, hz"),
 ];
 
 impl Unit {
@@ -125,7 +125,7 @@ const ANGLE: Units = (&[Unit::Degree, Unit::Radian], [0, 0]);
 const RATE: Units = (&[Unit::DegreePerSecond, Unit::RadianPerSecond, Unit::DegreePerMinute], [-1, 0]);
 const SPEED: Units = (&[Unit::MetrePerSecond, Unit::Knot], [-1, 1]);
 const LENGTH: Units = (&[Unit::Metre], [0, 1]);
-const REVOLUTIONS: Units = (&[Unit::PerSecond, Unit::PerMinute], [-1, 0]);
+const REVOLUTIONS: Units = (&[Unit::RevolutionPerSecond, Unit::RevolutionPerMinute], [-1, 0]);
 
 /// Every channel in the column order of written files, with the quantity of its column name and its units.
 const CHANNELS: [(Channel, &str, Units); 15] = [
@@ -163,7 +163,7 @@ impl Channel {
         CHANNELS[self as usize].2.1
     }
 
-    /// Quantity as the beginning of a column name.
+    /// Quantity at the beginning of a column name, such as `yaw_rate`.
     pub fn quantity(self) -> &'static str {
         CHANNELS[self as usize].1
     }
@@ -203,7 +203,7 @@ impl Channel {
         self.name_in(self.written_unit())
     }
 
-    /// Every column name of this channel, for messages: `heading_deg or heading_rad`.
+    /// Every column name of this channel, as text of a message: `heading_deg or heading_rad`.
     pub fn accepted_names(self) -> String {
         self.units().iter().map(|unit| self.name_in(*unit)).collect::<Vec<_>>().join(" or ")
     }
@@ -271,6 +271,6 @@ mod tests {
         // 15.5 knots are 7.974 m/s (1852 m in 3600 s).
         approx::assert_relative_eq!(15.5 * Unit::Knot.si_factor(), 7.973_888_888_888_89, max_relative = 1e-14);
         approx::assert_relative_eq!(60.0 * Unit::DegreePerMinute.si_factor(), Unit::DegreePerSecond.si_factor());
-        assert_eq!(90.0 * Unit::PerMinute.si_factor(), 1.5);
+        assert_eq!(90.0 * Unit::RevolutionPerMinute.si_factor(), 1.5);
     }
 }

@@ -15,8 +15,8 @@ use crate::wording::{counted, rounded_to_thousandth};
 /// Minimum magnitude of an impossible rudder angle, rad.
 pub(crate) const MIN_IMPOSSIBLE_RUDDER_RAD: f64 = 1.6;
 
-/// Maximum magnitude of the other rudder angles of a record with impossible ones, rad. Beyond it the unit of the column
-/// is wrong, and not single readings.
+/// Maximum magnitude of the possible rudder angles of a record with impossible angles, rad. A larger angle shows a
+/// wrong unit of the column, not single wrong readings.
 const MAX_RUDDER: f64 = 1.05;
 
 /// Maximum share of rows with an impossible rudder angle.
@@ -44,8 +44,8 @@ const MIN_FROZEN_ROWS: usize = 8;
 /// Minimum ratio of the rate of the heading at the end of a freeze to the 99th percentile of its rates.
 const MIN_THAW_RATIO: f64 = 3.0;
 
-/// Minimum change of heading on either side of a freeze, over as many readings, in steps of its digits. On either side
-/// of a peak that the digits do not resolve, the change is 8 steps.
+/// Minimum change of heading before and after a freeze, each over as many readings as the freeze has, in steps of the
+/// resolution. Before and after a peak that the resolution flattens, the change is 8 steps.
 const MIN_TURN_STEPS: f64 = 20.0;
 
 /// Sentinels: numbers that loggers write for a missing reading, without their sign.
@@ -55,15 +55,15 @@ const SENTINELS: [f64; 12] =
 /// Minimum distance of a sentinel from the last reading, in the unit of the column.
 const MIN_SENTINEL_JUMP: f64 = 60.0;
 
-/// `true` for a sentinel: a number that loggers write for a missing reading, far from the last reading if there is
-/// one. For a position any value is possible.
+/// `true` for a sentinel: a number (in the unit of the column) that loggers write for a missing reading, far from the
+/// last reading, if any. Always `false` for a position, which may have any value.
 pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bool {
     !matches!(channel, Channel::North | Channel::East)
         && SENTINELS.contains(&value.abs())
         && last.is_none_or(|last| (value - last).abs() > MIN_SENTINEL_JUMP)
 }
 
-/// Cleans the columns and returns the warnings of all changes. Changed single readings are added to `rejected`.
+/// Cleans the columns and returns the warnings of all changes. Single wrong readings are added to `rejected`.
 pub(crate) fn clean(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Vec<Warning> {
     let mut warnings = Vec::new();
     warnings.extend(written::below_360(columns));
@@ -114,7 +114,7 @@ fn ordinal(number: usize) -> String {
     format!("{number}{ending}")
 }
 
-/// Adds the readings of these rows to `rejected` and returns up to six of their times, for a message.
+/// Adds the readings of these rows to `rejected`; returns the text `at t = … s` with up to six of their times.
 fn reject(
     channel: Channel,
     time: &[f64],
@@ -239,8 +239,8 @@ fn has_rest(values: &[f64]) -> bool {
     false
 }
 
-/// Sets a frozen heading to missing and returns the warning; `None` without a freeze. After a freeze the heading leaves
-/// its value faster than the ship turns, or the ship turns before and after by much more than the heading resolves.
+/// Sets a frozen heading to missing and returns the warning; `None` without a freeze. A constant heading is frozen if
+/// it then changes faster than the ship turns, or if the ship turns before and after by much more than the resolution.
 fn blank_frozen(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;

@@ -37,7 +37,7 @@ pub struct Stamp {
     /// Second of the day; `None` for a date alone.
     second: Option<f64>,
     /// Minutes by which the local time is ahead of UTC; `None` without a stated zone.
-    zone: Option<i32>,
+    utc_offset_min: Option<i32>,
     /// `true` if the seconds have a nonzero fraction.
     fraction: bool,
 }
@@ -210,7 +210,7 @@ impl Stamp {
         let mut scan = Scan { tail: text };
         let clock_alone = text.iter().take(3).any(|byte| matches!(byte, b':' | b'h'));
         let date = if clock_alone { None } else { Some(read_date(&mut scan)?) };
-        let mut stamp = Self { date, second: None, zone: None, fraction: false };
+        let mut stamp = Self { date, second: None, utc_offset_min: None, fraction: false };
         if date.is_some() {
             if scan.tail.is_empty() {
                 // Eight digits may be a number instead.
@@ -223,12 +223,12 @@ impl Stamp {
         (stamp.second, stamp.fraction) = (Some(second), fraction);
         scan.blanks();
         if !scan.tail.is_empty() {
-            stamp.zone = Some(read_zone(&mut scan)?);
+            stamp.utc_offset_min = Some(read_zone(&mut scan)?);
         }
         scan.tail.is_empty().then_some(stamp)
     }
 
-    /// Stamp from a date and a time of day.
+    /// Stamp with the date of a stamp, and the time of day and zone of another.
     pub fn joined(date: Self, time: Self) -> Self {
         Self { date: date.date, ..time }
     }
@@ -236,7 +236,7 @@ impl Stamp {
     /// Stamp from a day since 1970-01-01 (`None` without a date) and a second of the day (UTC).
     pub fn new(day: Option<i64>, second: f64) -> Self {
         let fraction = second.fract() != 0.0;
-        Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
+        Self { date: day.map(Date::Day), second: Some(second), utc_offset_min: Some(0), fraction }
     }
 
     /// `true` if there is a time of day.
@@ -263,7 +263,7 @@ pub struct Clock {
     /// Second of the day.
     pub second: f64,
     /// Minutes by which the clock is ahead of UTC; `None` without a stated zone.
-    pub zone: Option<i32>,
+    pub utc_offset_min: Option<i32>,
 }
 
 impl Clock {
@@ -281,7 +281,8 @@ impl Clock {
     /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0. `None`
     /// without a time of day, for an ambiguous date, or for a date on a clock without one.
     pub fn record_time(&self, stamp: &Stamp) -> Option<f64> {
-        let shift = self.zone.zip(stamp.zone).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
+        let shift =
+            self.utc_offset_min.zip(stamp.utc_offset_min).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
         match stamp.date {
             None => Some(second.rem_euclid(SECONDS_PER_DAY)),
@@ -297,7 +298,7 @@ pub enum StampFault {
     /// Stamp without a time of day.
     NoTime,
     /// The date changes and either number may be the month, or the date is invalid with the month of earlier dates.
-    EitherMonth,
+    AmbiguousDate,
 }
 
 /// Converter of the time stamps of one file to seconds since its first stamp.
@@ -316,10 +317,11 @@ pub struct StampConverter {
 }
 
 impl StampConverter {
-    /// Seconds from the first stamp to this one.
+    /// Seconds from the first stamp to this stamp.
     ///
     /// A time of day that decreases by more than half a day has passed midnight. A date such as 03/04/2026 is kept in
-    /// both readings until one date determines the month: a number above 12, or the step of one day to the next date.
+    /// both readings until a date determines the month: by a number above 12, or by a step of a day to the next date.
+    /// Fails with [`StampFault`] for a stamp without a time of day, and for a date whose month is not determined.
     pub fn seconds(&mut self, stamp: Stamp) -> Result<f64, StampFault> {
         let second = stamp.second.ok_or(StampFault::NoTime)?;
         let first = *self.first.get_or_insert(stamp);
@@ -332,7 +334,7 @@ impl StampConverter {
                 self.midnights
             }
         };
-        let zone = match (stamp.zone, first.zone) {
+        let zone = match (stamp.utc_offset_min, first.utc_offset_min) {
             (Some(minutes), Some(begin)) => 60.0 * f64::from(begin - minutes),
             _ => 0.0,
         };
@@ -359,13 +361,13 @@ impl StampConverter {
                 (None, Some(day), Some(month)) if day != month => match (day == next, month == next) {
                     (true, false) => Some(false),
                     (false, true) => Some(true),
-                    _ => return Err(StampFault::EitherMonth),
+                    _ => return Err(StampFault::AmbiguousDate),
                 },
                 (None, ..) => None,
             };
             if self.month_first == Some(true) { month_first } else { day_first }
         };
-        let day = day.ok_or(StampFault::EitherMonth)?;
+        let day = day.ok_or(StampFault::AmbiguousDate)?;
         self.last = Some((date, day));
         Ok(day)
     }
@@ -380,7 +382,7 @@ impl StampConverter {
             (None, Some(day), None) | (None, None, Some(day)) => Some(day),
             (None, ..) => None,
         });
-        Some(Clock { day, second: first.second?, zone: first.zone })
+        Some(Clock { day, second: first.second?, utc_offset_min: first.utc_offset_min })
     }
 }
 

@@ -110,7 +110,7 @@ pub struct DeclaredConditions {
 pub enum Shortcoming {
     /// Undeclared condition.
     #[error("{condition} is not declared; required: {requirement}")]
-    Unknown { condition: &'static str, requirement: &'static str },
+    Undeclared { condition: &'static str, requirement: &'static str },
     /// Water depth below the minimum.
     #[error("the water is {draughts:.1} mean draughts deep; required: more than {MIN_DEPTH_DRAUGHTS}")]
     Depth { draughts: f64 },
@@ -227,23 +227,23 @@ impl DeclaredConditions {
     /// Deviations from the conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared. Current and
     /// speed are not checked.
     pub fn shortcomings(&self) -> Vec<Shortcoming> {
-        let unknown = |condition, requirement| Some(Shortcoming::Unknown { condition, requirement });
+        let undeclared = |condition, requirement| Some(Shortcoming::Undeclared { condition, requirement });
         let depth = match self.depth_in_draughts() {
-            None => unknown("the water depth in draughts", "more than 4 mean draughts"),
+            None => undeclared("the water depth in draughts", "more than 4 mean draughts"),
             Some(draughts) => (draughts <= MIN_DEPTH_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
         };
         let calm = self.weather.map(|_| 0);
         let wind = match self.wind_beaufort.or(calm) {
-            None => unknown("the wind", "at most Beaufort 5"),
+            None => undeclared("the wind", "at most Beaufort 5"),
             Some(beaufort) => (beaufort > MAX_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
         };
         let sea = match self.sea_state.or(calm) {
-            None => unknown("the sea state", "at most sea state 4"),
+            None => undeclared("the sea state", "at most sea state 4"),
             Some(state) => (state > MAX_SEA_STATE).then_some(Shortcoming::Sea { state }),
         };
         let draught = self.draught_share();
         let load = match (self.loading(), draught) {
-            (None, _) => unknown("the loading", "full load with a tolerance of 5 % in draught"),
+            (None, _) => undeclared("the loading", "full load with a tolerance of 5 % in draught"),
             (Some(Loading::Partial), _) => Some(Shortcoming::Load { draught }),
             (Some(Loading::Full), share) => share
                 .filter(|share| (share - 1.0).abs() > MAX_DRAUGHT_DEVIATION_SHARE)

@@ -22,7 +22,7 @@ thread_local! {
 
 static QUIET: Once = Once::new();
 
-/// Runs a decoder; `None` if it panics. The message of the panic is not shown.
+/// Result of a decoder; `None` if it panics. The message of the panic is not shown.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Option<T> {
     QUIET.call_once(|| {
         let hook = std::panic::take_hook();
@@ -45,9 +45,9 @@ pub struct PageHead {
     /// `true` for a dictionary page.
     pub is_dictionary: bool,
     /// Size unpacked, bytes.
-    pub unpacked: u64,
+    pub unpacked_bytes: u64,
     /// Size packed, bytes.
-    pub packed: u64,
+    pub packed_bytes: u64,
     /// Number of values.
     pub values: u64,
 }
@@ -61,8 +61,8 @@ impl PageHead {
         const NEXT_FIELD_STRUCT: u8 = 0x0c;
         const DICTIONARY: u64 = 2;
         let mut bytes = head;
-        let [kind, unpacked, packed] = [(); 3].map(|()| number(&mut bytes));
-        let (kind, unpacked, packed) = (whole(kind?)?, whole(unpacked?)?, whole(packed?)?);
+        let [kind, unpacked_bytes, packed_bytes] = [(); 3].map(|()| number(&mut bytes));
+        let (kind, unpacked_bytes, packed_bytes) = (whole(kind?)?, whole(unpacked_bytes?)?, whole(packed_bytes?)?);
         if bytes.first()? & 0x0f != NEXT_FIELD_STRUCT {
             number(&mut bytes)?;
         }
@@ -70,11 +70,11 @@ impl PageHead {
         bytes = inner;
         let values = whole(number(&mut bytes)?)?;
         let is_dictionary = kind == DICTIONARY;
-        (field & 0x0f == NEXT_FIELD_STRUCT).then_some(Self { is_dictionary, unpacked, packed, values })
+        (field & 0x0f == NEXT_FIELD_STRUCT).then_some(Self { is_dictionary, unpacked_bytes, packed_bytes, values })
     }
 }
 
-/// Whole number in the next field of a Thrift struct, in zigzag encoding; `None` for a field of another kind.
+/// Next field of a Thrift struct, still in zigzag encoding; `None` for a field that is not an integer of 32 bits.
 fn number(bytes: &mut &[u8]) -> Option<u64> {
     const NEXT_FIELD_INTEGER: u8 = 0x15;
     let (&field, mut digits) = bytes.split_first()?;
@@ -147,8 +147,9 @@ mod tests {
 
     #[test]
     fn pages_of_any_size_are_not_believed() {
-        let is_page =
-            |head: &[u8]| PageHead::read(head).is_some_and(|page| page.unpacked < 1 << 24 && page.values < 1 << 20);
+        let is_page = |head: &[u8]| {
+            PageHead::read(head).is_some_and(|page| page.unpacked_bytes < 1 << 24 && page.values < 1 << 20)
+        };
         // A data page (kind 0) of 300 bytes, 200 packed, with 100 values; the same with a checksum of -1.
         let page = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x90, 0x03, 0x2c, 0x15, 0xc8, 0x01, 0x15, 0x00];
         let summed = [0x15, 0x00, 0x15, 0xd8, 0x04, 0x15, 0x90, 0x03, 0x15, 0x01, 0x1c, 0x15, 0xc8, 0x01, 0x15, 0x00];

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use ship::ShortNumber;
 use ship::angle::{from_deg, to_deg};
 
-/// Serde adapter of an angle or angular rate, degrees in the file and rad here: `#[serde(with = "Degrees::<…>")]`.
+/// Serde adapter of an angle or angular rate, degrees in the file and rad in memory: `#[serde(with = "Degrees::<…>")]`.
 pub struct Degrees<T>(PhantomData<T>);
 
 /// Number or optional number that [`Degrees`] converts.
@@ -36,14 +36,14 @@ pub fn written_deg(angle: f64) -> f64 {
 }
 
 impl<T: Angle + Copy + Serialize> Degrees<T> {
-    /// Writes degrees.
+    /// Writes an angle in rad as degrees.
     pub fn serialize<S: Serializer>(angle: &T, serializer: S) -> Result<S::Ok, S::Error> {
         angle.map_angle(written_deg).serialize(serializer)
     }
 }
 
 impl<T: Angle> Degrees<T> {
-    /// Reads degrees.
+    /// Angle in rad from degrees in the file.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error>
     where
         T: Deserialize<'de>,

@@ -28,8 +28,8 @@ pub enum FileError {
     Folder,
     /// Device or a socket in place of a file.
     #[error("this is neither a file nor a pipe (a device or a socket); name a file")]
-    NoFile,
-    /// File larger than the maximum size of its kind; `size` (bytes) is `None` if it was not known before reading.
+    NotAFile,
+    /// File larger than the maximum size of its kind; `size` (bytes) is `None` if it is unknown before reading.
     #[error(
         "this file has {} bytes, {} has at most {}; name another file or use a part of this one",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.max_bytes
@@ -54,7 +54,7 @@ impl From<io::Error> for FileError {
     }
 }
 
-/// Open file that ends with an error beyond the maximum size of its kind.
+/// Reader of an open file; reading fails beyond the maximum size of its kind.
 pub struct LimitedReader<'a> {
     file: Box<dyn Read + 'a>,
     kind: FileKind,
@@ -91,8 +91,8 @@ pub fn display_path(path: &Path) -> &Path {
 
 /// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
-/// Fails if there is no such file or it is larger than its kind allows. A file of unknown size fails in reading,
-/// with an error that is converted back to a [`FileError`].
+/// Fails for an absent file, a folder, a device or socket, and a file larger than its kind allows. If the size is
+/// unknown, reading fails instead, with an error that `FileError::from` converts back to a [`FileError`].
 pub fn open(path: &Path, kind: FileKind) -> Result<LimitedReader<'static>, FileError> {
     if path == Path::new(STDIN) {
         return Ok(LimitedReader::new(Box::new(io::stdin().lock()), kind, None));
@@ -102,7 +102,7 @@ pub fn open(path: &Path, kind: FileKind) -> Result<LimitedReader<'static>, FileE
         kind if kind.is_dir() => return Err(FileError::Folder),
         kind if kind.is_file() => Some(about.len()),
         kind if is_pipe(kind) => None,
-        _ => return Err(FileError::NoFile),
+        _ => return Err(FileError::NotAFile),
     };
     if size.is_some_and(|size| size > kind.max_bytes) {
         return Err(FileError::TooLarge { kind, size });
@@ -158,6 +158,6 @@ mod tests {
     fn what_hides_its_size_is_stopped_while_it_is_read() {
         let error = read_text(Path::new("/proc/self/status"), SMALL).expect_err("it is longer");
         assert!(matches!(error, FileError::TooLarge { size: None, .. }), "{error}");
-        assert!(matches!(open(Path::new("/dev/zero"), SMALL), Err(FileError::NoFile)));
+        assert!(matches!(open(Path::new("/dev/zero"), SMALL), Err(FileError::NotAFile)));
     }
 }

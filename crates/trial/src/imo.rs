@@ -1,5 +1,5 @@
-//! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, for a zig-zag record. The limits of
-//! the turning circle are here, too, without measurements.
+//! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, for a zig-zag record, and the
+//! limits of the turning circle, which a zig-zag does not measure.
 //!
 //! The criteria are for ships of 100 m and above (chemical and gas carriers of any length) at full load and even keel,
 //! in deep unrestricted water and calm weather, at the test speed: at least 90 % of the speed at 85 % of the maximum
@@ -46,7 +46,7 @@ fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, li
     }
 }
 
-/// Caution for a ship shorter than covered by the criteria; `None` for a longer ship.
+/// Text of the caution for a ship shorter than [`MIN_LENGTH_M`]; `None` for any other ship.
 pub fn short_ship_caution(Particulars { length, speed }: Particulars) -> Option<String> {
     (length < MIN_LENGTH_M).then(|| {
         format!(

@@ -55,7 +55,7 @@ pub use file::FileError;
 pub use manoeuvre::Manoeuvre;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::wind::relative_wind;
-pub use record::{Columns, Corner, Noise, RecordOrigin, RejectedReading, Trial, TrialError};
+pub use record::{Columns, Corner, RecordOrigin, RejectedReading, SensorNoise, Trial, TrialError};
 pub use scale::{ScaleError, Scales};
 pub use sidecar::{Sidecar, SidecarError};
 pub use trial_particulars::TrialParticulars;

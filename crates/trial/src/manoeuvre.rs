@@ -124,7 +124,7 @@ pub enum Trigger {
 /// Step of a manoeuvre: a rudder order, or the end, with the condition that triggers it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrderStep {
-    /// Condition of the order.
+    /// Condition that triggers the order or the end.
     pub trigger: Trigger,
     /// Ordered rudder, rad; `None` for the end of the manoeuvre.
     pub order: Option<f64>,
@@ -175,7 +175,7 @@ impl Manoeuvre {
         self
     }
 
-    /// Step after a number of orders; the first order is given at once.
+    /// Step that follows a number of orders, 0 for the first step, which is given at once.
     pub fn step(&self, orders: usize) -> OrderStep {
         use Trigger::{Deviation, Never, Time};
         let (trigger, order, key) = match (self, orders) {
@@ -244,7 +244,7 @@ impl Manoeuvre {
         total
     }
 
-    /// Maximum number of executes; [`usize::MAX`] for a zig-zag without a number of executes.
+    /// Maximum number of rudder orders; [`usize::MAX`] for a zig-zag without a number of executes.
     pub fn max_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
@@ -268,7 +268,7 @@ impl Manoeuvre {
         }
     }
 
-    /// Side of the first execute; starboard if there is none.
+    /// Side of the first execute; starboard for a replay and a spiral.
     pub fn first_side(&self) -> Side {
         match self {
             Self::ZigZag { first: side, .. }
@@ -330,7 +330,7 @@ pub fn rounded_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 
-/// Text that is not a manoeuvre.
+/// Error of a text that is not a manoeuvre; contains the text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is not a manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \

@@ -13,13 +13,13 @@ pub enum ColumnMeaning {
     /// Channel, with its unit if stated.
     Channel(Channel, Option<Unit>),
     /// Speed over ground, with its unit if stated; used as the speed if there is none through the water.
-    OverGround(Option<Unit>),
+    SpeedOverGround(Option<Unit>),
     /// Latitude, degrees north.
     Latitude,
     /// Longitude, degrees east.
     Longitude,
     /// Course over ground, which is not a heading.
-    Course,
+    CourseOverGround,
 }
 
 /// Maximum length of a name or unit, bytes; a longer text has no meaning.
@@ -70,28 +70,28 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
             "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser, vitesse, \
              vitesse surface, velocidad, fart, sokuryoku, sensoku",
         ),
-        (OverGround(None), "sog, speed over ground, gps speed, fahrt über grund"),
+        (SpeedOverGround(None), "sog, speed over ground, gps speed, fahrt über grund"),
         (Channel(C::Surge, None), "surge velocity, longitudinal speed"),
         (Channel(C::Sway, None), "sway velocity, transverse speed"),
         (Channel(C::North, None), "northing"),
         (Channel(C::East, None), "easting"),
         (Latitude, "latitude, lat"),
         (Longitude, "longitude, lon"),
-        (Course, "cog, course, course over ground, kurs über grund"),
+        (CourseOverGround, "cog, course, course over ground, kurs über grund"),
         (Channel(C::Roll, None), "heel"),
-        (Channel(C::PropellerRate, Some(Unit::PerMinute)), "rpm"),
+        (Channel(C::PropellerRate, Some(Unit::RevolutionPerMinute)), "rpm"),
         (Channel(C::WindRelativeSpeed, None), "apparent wind speed, aws"),
         (Channel(C::WindRelativeFrom, None), "awa"),
         (Channel(C::WindTrueSpeed, None), "tws"),
     ]
 };
 
-/// Customary column names with their meaning.
+/// Every customary column name, normalised, with its meaning.
 pub fn names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
     NAMES.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
 }
 
-/// Notations of units.
+/// Every notation of a unit, in lower case without blanks, with its unit.
 pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
     UNITS.iter().flat_map(|&(unit, .., names)| names.split(", ").map(move |name| (name, unit)))
 }
@@ -111,7 +111,7 @@ pub fn parse_unit(text: &str) -> Option<Unit> {
     units().find(|(name, _)| *name == plain).map(|(_, unit)| unit)
 }
 
-/// Normalised name: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
+/// Normalised name: small letters, single blanks in place of all other characters, `RudderAngle` as two words.
 fn normalised(name: &str) -> String {
     let mut spaced = String::new();
     let mut small_before = false;
@@ -183,7 +183,7 @@ fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
     Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
 }
 
-/// Meaning of a column with a unit; `None` if the quantity cannot have it.
+/// Meaning of a column with its unit replaced; `None` if the quantity cannot have the unit.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => {
@@ -192,8 +192,10 @@ pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
         ColumnMeaning::Channel(channel, _) => {
             channel_unit(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
-        ColumnMeaning::OverGround(_) => channel_unit(Channel::Speed, unit).map(Some).map(ColumnMeaning::OverGround),
-        ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
+        ColumnMeaning::SpeedOverGround(_) => {
+            channel_unit(Channel::Speed, unit).map(Some).map(ColumnMeaning::SpeedOverGround)
+        }
+        ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::CourseOverGround => {
             (unit == Unit::Degree).then_some(meaning)
         }
         ColumnMeaning::Date => None,
@@ -226,9 +228,9 @@ mod tests {
             ("yawRate_deg_s", channel(YawRate, Some(Unit::DegreePerSecond))),
             ("STW (kts)", channel(Speed, Some(Unit::Knot))),
             ("Speed in m/s", channel(Speed, Some(Unit::MetrePerSecond))),
-            ("SOG", Some(ColumnMeaning::OverGround(None))),
-            ("SOG [kn]", Some(ColumnMeaning::OverGround(Some(Unit::Knot)))),
-            ("RPM", channel(PropellerRate, Some(Unit::PerMinute))),
+            ("SOG", Some(ColumnMeaning::SpeedOverGround(None))),
+            ("SOG [kn]", Some(ColumnMeaning::SpeedOverGround(Some(Unit::Knot)))),
+            ("RPM", channel(PropellerRate, Some(Unit::RevolutionPerMinute))),
             ("Wind True Speed (m/s)", channel(WindTrueSpeed, Some(Unit::MetrePerSecond))),
             ("Time [s]", Some(ColumnMeaning::Time(Some(Unit::Second)))),
             ("Zeit (min)", Some(ColumnMeaning::Time(Some(Unit::Minute)))),
@@ -237,7 +239,7 @@ mod tests {
             ("DateTime", Some(ColumnMeaning::Time(None))),
             ("Date", Some(ColumnMeaning::Date)),
             ("Latitude [deg]", Some(ColumnMeaning::Latitude)),
-            ("COG", Some(ColumnMeaning::Course)),
+            ("COG", Some(ColumnMeaning::CourseOverGround)),
         ];
         for (name, expected) in cases {
             assert_eq!(column_meaning(name), expected, "{name}");

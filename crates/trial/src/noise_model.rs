@@ -8,7 +8,7 @@ pub struct NoiseModel {
     /// Standard deviation of the compass error, rad.
     pub heading_sd: f64,
     /// Correlation time of the compass error, s; `None` for a white error.
-    pub heading_correlation: Option<f64>,
+    pub heading_correlation_time: Option<f64>,
     /// Standard deviation of the white rate-gyro error, rad/s; `None` if the yaw rate is not used.
     pub yaw_rate_sd: Option<f64>,
     /// Noise law of the random yaw moment.
@@ -18,7 +18,7 @@ pub struct NoiseModel {
     pub moment_level: f64,
     /// Correlation time τ of an Ornstein–Uhlenbeck moment, s; infinite for a random walk and without a moment, 0 for
     /// white noise.
-    pub moment_correlation: f64,
+    pub moment_correlation_time: f64,
     /// Standard deviation of the white error of the recorded rudder, rad; 0 for an exact rudder.
     pub rudder_sd: f64,
 }
@@ -28,11 +28,11 @@ impl NoiseModel {
     pub fn compass(heading_sd: f64) -> Self {
         Self {
             heading_sd,
-            heading_correlation: None,
+            heading_correlation_time: None,
             yaw_rate_sd: None,
             moment: MomentKind::None,
             moment_level: 0.0,
-            moment_correlation: f64::INFINITY,
+            moment_correlation_time: f64::INFINITY,
             rudder_sd: 0.0,
         }
     }

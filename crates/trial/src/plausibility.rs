@@ -29,7 +29,7 @@ use rudder::rudder_movements;
 /// Implausibility of a record, with angles in degrees for messages.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
-pub enum Implausible {
+pub enum Implausibility {
     /// Neither heading nor rudder changes.
     #[error(
         "nothing moves: the heading changes by {heading_deg:.4}° and the rudder by {rudder_deg:.4}°; check that the right \
@@ -147,11 +147,12 @@ const WARNING_SHARE: f64 = 0.4;
 
 /// Checks a record and returns the warnings.
 ///
-/// Fails with [`Implausible`] if rudder and heading do not move, a unit is wrong by the factor between degrees and
-/// radians, or the signs of rudder, heading and yaw rate contradict each other. The sign of the rudder is the sign of b
+/// Fails with [`Implausibility`] if rudder and heading do not move, a unit is wrong by the factor between degrees and
+/// radians or minutes and seconds, a channel alternates between two sensors, or the signs of rudder, heading and yaw
+/// rate contradict each other. The sign of the rudder is the sign of b
 /// = K/T in ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle of
 /// ∫δ dψ.
-pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
+pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausibility> {
     let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
     let turns = range_deg(trial.heading()) > MAX_SWING_DEG;
@@ -163,7 +164,7 @@ pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausible> {
     Ok(warnings)
 }
 
-/// Range of an angle in radians, deg.
+/// Range of an angle that is given in rad, deg.
 fn range_deg(values: &[f64]) -> f64 {
     to_deg(range(values))
 }
@@ -182,18 +183,18 @@ pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
 }
 
 /// Check of movement and angle units: heading and rudder move by comparable amounts.
-fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
+fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausibility> {
     let (heading_deg, rudder_deg) = (range_deg(trial.heading()), range_deg(trial.rudder()));
     let largest_deg = to_deg(trial.largest_rudder());
     if heading_deg < MIN_RANGE_DEG && rudder_deg < MIN_RANGE_DEG {
-        return Err(Implausible::NothingMoves { heading_deg, rudder_deg });
+        return Err(Implausibility::NothingMoves { heading_deg, rudder_deg });
     }
     // 1.6 rad: no rudder exceeds 90°.
     if largest_deg > 92.0 {
-        return Err(Implausible::RudderInDegrees { largest_deg });
+        return Err(Implausibility::RudderInDegrees { largest_deg });
     }
     if heading_deg < MIN_RANGE_DEG && rudder_deg >= 1.0 {
-        return Err(Implausible::HeadingConstant { heading_deg, rudder_deg });
+        return Err(Implausibility::HeadingConstant { heading_deg, rudder_deg });
     }
     if rudder_deg < MIN_RANGE_DEG {
         let text = format!("the rudder stays at {largest_deg:.2}°; this record alone does not show the response to it");
@@ -204,7 +205,7 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     // about 20 times; radians in place of degrees make that 50 and more.
     if largest_deg < 0.72 {
         if heading_deg > 1.0 && ratio > 20.0 {
-            return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
+            return Err(Implausibility::RudderInRadians { largest_deg, heading_deg });
         }
         return Ok(Some(WarningCode::AngleUnit.warning(format!(
             "the rudder never exceeds {largest_deg:.3}°; if the angles are in radians, name the columns rudder_rad and \
@@ -214,11 +215,11 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
     let reversals = count_reversals(trial.rudder());
     if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
         return Err(match trial.is_heading_integrated() {
-            true => Implausible::YawRateInMinutes { heading_deg, rudder_deg },
-            false => Implausible::HeadingInDegrees { heading_deg, rudder_deg },
+            true => Implausibility::YawRateInMinutes { heading_deg, rudder_deg },
+            false => Implausibility::HeadingInDegrees { heading_deg, rudder_deg },
         });
     }
-    let in_radians = Implausible::HeadingInRadians { heading_deg, rudder_deg };
+    let in_radians = Implausibility::HeadingInRadians { heading_deg, rudder_deg };
     if rudder_deg >= MIN_RUDDER_RANGE_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {
         return Err(in_radians);
     }
@@ -232,17 +233,17 @@ fn ranges(trial: &Trial) -> Result<Option<Warning>, Implausible> {
 }
 
 /// Check that heading and rudder each come from a single sensor.
-fn two_inputs(trial: &Trial) -> Result<(), Implausible> {
+fn two_inputs(trial: &Trial) -> Result<(), Implausibility> {
     for (channel, values) in [(Channel::Heading, trial.heading()), (Channel::Rudder, trial.rudder())] {
         if let Some(apart) = sensor_disagreement(trial.time(), values) {
-            return Err(Implausible::TwoInputs { channel: channel.label(), apart_deg: to_deg(apart) });
+            return Err(Implausibility::TwoInputs { channel: channel.label(), apart_deg: to_deg(apart) });
         }
     }
     Ok(())
 }
 
 /// Check of the yaw rate against the heading.
-fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
+fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausibility> {
     let Some(slope) = heading_on_yaw_rate(trial).filter(|_| range_deg(trial.heading()) > MIN_RANGE_DEG) else {
         return Ok(None);
     };
@@ -253,12 +254,12 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warn
         return Ok((slope.share < 0.5).then(|| WarningCode::YawRate.warning(text)));
     }
     if (40.0..=75.0).contains(&ratio.abs()) || (40.0..=75.0).contains(&ratio.abs().recip()) {
-        return Err(Implausible::YawRateUnit { ratio });
+        return Err(Implausibility::YawRateUnit { ratio });
     }
     if ratio < 0.0 {
         let heading_follows_rudder = response.is_none_or(|response| response.value > 0.0);
         let culprit = if heading_follows_rudder { "yaw-rate" } else { "heading" };
-        return Err(Implausible::YawRateSign { ratio, culprit });
+        return Err(Implausibility::YawRateSign { ratio, culprit });
     }
     Ok((!(0.8..=1.25).contains(&ratio)).then(|| {
         WarningCode::YawRate.warning(format!(
@@ -268,16 +269,16 @@ fn yaw_rate(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warn
 }
 
 /// Check that the ship turns to the side of the rudder.
-fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausible> {
+fn rudder_sign(trial: &Trial, response: Option<PartialSlope>) -> Result<Option<Warning>, Implausibility> {
     let moved = range_deg(trial.rudder()) >= MIN_RUDDER_RANGE_DEG && range_deg(trial.heading()) >= MIN_RESPONSE_DEG;
     let Some(slope) = response.filter(|slope| moved && slope.value < 0.0) else { return Ok(None) };
     let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
-    let warning = |flipped: Implausible| Some(WarningCode::RudderSign.warning(flipped.to_string()));
+    let warning = |flipped: Implausibility| Some(WarningCode::RudderSign.warning(flipped.to_string()));
     if heading_deg > MAX_SWING_DEG {
         // A circle is a single movement of the rudder: sufficient for a warning, not for an error.
-        return Ok(warning(Implausible::TurnsAgainstRudder { heading_deg, share_percent }));
+        return Ok(warning(Implausibility::TurnsAgainstRudder { heading_deg, share_percent }));
     }
-    let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
+    let flipped = Implausibility::RudderFlipped { gain: slope.value, share_percent };
     match slope.share {
         ERROR_SHARE.. => Err(flipped),
         WARNING_SHARE.. => Ok(warning(flipped)),

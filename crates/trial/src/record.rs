@@ -1,4 +1,4 @@
-//! Record of one trial: columns that belong together, checked once on creation of the record.
+//! Record of a trial: columns that belong together, checked when the record is made.
 
 mod changed;
 mod corners;
@@ -26,9 +26,9 @@ pub enum RecordOrigin {
     Simulated {
         /// Name of the scenario.
         scenario: String,
-        /// Cell of the design.
+        /// Number of the cell in the design of the scenario.
         cell: u64,
-        /// Replicate within the cell.
+        /// Number of the replicate in the cell.
         replicate: u64,
     },
     /// Measured: the file and its content.
@@ -42,28 +42,28 @@ pub enum RecordOrigin {
 
 /// Declared standard deviations of the sensors; `None` if undeclared.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Noise {
+pub struct SensorNoise {
     /// Standard deviation of the heading, rad.
-    pub heading: Option<f64>,
+    pub heading_sd: Option<f64>,
     /// Standard deviation of the yaw rate, rad/s.
-    pub yaw_rate: Option<f64>,
+    pub yaw_rate_sd: Option<f64>,
     /// Standard deviation of the rudder angle, rad.
-    pub rudder: Option<f64>,
+    pub rudder_sd: Option<f64>,
 }
 
 /// Columns of a record, in SI units and radians; NaN for missing.
 #[derive(Debug, Clone, Default)]
 pub struct Columns {
-    /// Time, s. Rows with a missing time or rudder must be omitted before.
+    /// Time, s. Rows with a missing time or rudder must be omitted before a record is made.
     pub time: Vec<f64>,
     /// Other channels, each as long as `time`.
     pub channels: BTreeMap<Channel, Vec<f64>>,
-    /// Columns with an unknown name, kept unchanged.
+    /// Name and values of each column with an unknown name, unchanged.
     pub unknown: Vec<(String, Vec<f64>)>,
 }
 
 impl Columns {
-    /// Omits rows; `keep` has one flag per row.
+    /// Omits the rows whose flag in `keep` is `false`.
     pub(crate) fn retain(&mut self, keep: &[bool]) {
         let retain_rows = |values: &mut Vec<f64>| {
             let mut keep = keep.iter();
@@ -128,12 +128,12 @@ pub enum TrialError {
 pub struct Trial {
     name: String,
     origin: RecordOrigin,
-    /// Shared by the records of many trials with one rudder.
+    /// Times and rudder, shared by the records of all trials with the same rudder.
     rudder: Arc<RecordedRudder>,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
     is_heading_integrated: bool,
-    noise: Noise,
+    noise: SensorNoise,
     particulars: Option<Particulars>,
     conditions: DeclaredConditions,
     rejected: Vec<RejectedReading>,
@@ -194,7 +194,7 @@ impl Trial {
             channels,
             unknown,
             is_heading_integrated,
-            noise: Noise::default(),
+            noise: SensorNoise::default(),
             particulars: None,
             conditions: DeclaredConditions::default(),
             rejected: Vec::new(),
@@ -202,7 +202,7 @@ impl Trial {
     }
 
     /// The same record with declared sensor noise.
-    pub fn with_noise(self, noise: Noise) -> Self {
+    pub fn with_noise(self, noise: SensorNoise) -> Self {
         Self { noise, ..self }
     }
 
@@ -256,7 +256,7 @@ impl Trial {
         self.time()[self.len() - 1] - self.time()[0]
     }
 
-    /// Median time between rows, s; in a long record the median of a hundred thousand evenly chosen intervals.
+    /// Median time between rows, s; in a long record the median of at most a hundred thousand evenly chosen intervals.
     pub fn sampling_period(&self) -> f64 {
         const MAX_INTERVALS: usize = 100_000;
         let pairs = self.time().windows(2).step_by(self.len() / MAX_INTERVALS + 1);
@@ -278,7 +278,7 @@ impl Trial {
         self.rudder.rows.values()
     }
 
-    /// Largest rudder angle to either side, rad.
+    /// Maximum magnitude of the rudder angle, rad.
     pub fn largest_rudder(&self) -> f64 {
         self.rudder().iter().fold(0.0, |largest, angle| largest.max(angle.abs()))
     }
@@ -318,7 +318,7 @@ impl Trial {
     }
 
     /// Declared sensor noise.
-    pub fn noise(&self) -> Noise {
+    pub fn noise(&self) -> SensorNoise {
         self.noise
     }
 
@@ -342,7 +342,7 @@ impl Trial {
         &self.conditions
     }
 
-    /// `true` if the sidecar declares a calm.
+    /// `true` if the sidecar declares calm weather.
     pub fn is_calm(&self) -> bool {
         self.conditions.weather == Some(DeclaredWeather::Calm)
     }
@@ -361,7 +361,7 @@ impl Trial {
     }
 }
 
-/// Trapezoid integral of a rate, from 0. NaN if the rate is missing; the integral continues between its neighbours.
+/// Trapezoid integral of a rate (unit/s) over time (s), from 0. NaN in rows without a rate, which the integral bridges.
 pub(crate) fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
     let mut total = 0.0;
     let mut last: Option<(f64, f64)> = None;
@@ -401,7 +401,8 @@ mod tests {
         let trial = Trial::new("run", origin, columns).expect("a record");
         let (model, ship) = (Particulars { length: 7.0, speed: 1.2 }, Particulars { length: 320.0, speed: 8.0 });
         assert!(trial.scaled_to(ship).is_none());
-        let trial = trial.with_particulars(model).with_noise(Noise { yaw_rate: Some(0.01), ..Noise::default() });
+        let trial =
+            trial.with_particulars(model).with_noise(SensorNoise { yaw_rate_sd: Some(0.01), ..SensorNoise::default() });
         let large = trial.scaled_to(ship).expect("a known scale");
         let prime = |trial: &Trial, channel: Channel| {
             let factor = trial.particulars().expect("declared").prime_factor(channel.dimension());
@@ -417,7 +418,7 @@ mod tests {
         assert!((ratio(&large) / ratio(&trial) - 1.0).abs() < 1e-12);
         let back = large.scaled_to(model).expect("a known scale");
         assert!(back.time().iter().zip(&time).all(|(one, other)| (one - other).abs() < 1e-12));
-        assert!((back.noise().yaw_rate.expect("declared") - 0.01).abs() < 1e-15);
+        assert!((back.noise().yaw_rate_sd.expect("declared") - 0.01).abs() < 1e-15);
         assert!(trial.scaled_to(Particulars { length: 0.0, speed: 1.0 }).is_none());
     }
 }

@@ -71,13 +71,13 @@ impl Scales {
         Ok(Some(Self { particulars, indices: indices.into_iter().flatten().collect() }))
     }
 
-    /// Records converted to the scale of the first, each from its declared length and speed.
+    /// Records converted to the scale of the first, each from its declared length and speed; without these, unchanged.
     pub fn to_first_scale(&self, trials: Vec<Trial>) -> Vec<Trial> {
         let scaled = |trial: Trial| trial.scaled_to(self.particulars[0]).unwrap_or(trial);
         trials.into_iter().map(scaled).collect()
     }
 
-    /// Indices of the first `count` records, grouped by scale.
+    /// Length and speed of every scale, with the indices of its records among the first `count`.
     pub fn groups(&self, count: usize) -> Vec<(Particulars, Vec<usize>)> {
         let records =
             |scale: usize| (0..count.min(self.indices.len())).filter(|&record| self.indices[record] == scale).collect();
@@ -86,7 +86,7 @@ impl Scales {
     }
 }
 
-/// Minimum significant difference, standard deviations: exceeded by one in 370 of a normal distribution.
+/// Minimum significant difference, standard deviations: a normal variate exceeds it with a probability of 1/370.
 const SIGNIFICANT_SDS: f64 = 3.0;
 
 /// Difference, as a share of the value, that must be significant before a number is accepted as independent of scale.
@@ -171,8 +171,7 @@ mod tests {
         assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
         assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::Undecided);
         assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]), (None, Scaling::Undecided));
-        // One of three estimates without an error: the verdict is that of the two others, except agreement of all
-        // three.
+        // An estimate without a standard deviation is ignored, but excludes the verdict that all three agree.
         let three = [of(1.0, 0.01), Quantity::without_uncertainty(1.0), of(1.01, 0.01)];
         assert_eq!(compare_scales(&three).1, Scaling::Undecided);
         let (difference, word) = compare_scales(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);

@@ -16,14 +16,14 @@ use toml::{Spanned, Value};
 use crate::conditions::DeclaredConditions;
 use crate::file::{FileKind, read_text};
 use crate::names::{ColumnMeaning, quantity_unit_meaning};
-use crate::record::Noise;
+use crate::record::SensorNoise;
 use crate::sidecar_error::LocatedProblem;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
 pub use crate::sidecar_keys::{SidecarKey, keys, schema};
 use crate::wording::shortened;
 
-/// Kind of file of a sidecar; in use are up to a hundred lines.
+/// Kind of file of a sidecar, at most 1 MiB; usual sidecars have up to a hundred lines.
 pub const SIDECAR_FILE: FileKind = FileKind { name: "a sidecar", max_bytes: 1 << 20 };
 
 /// Reference to a column of a table.
@@ -37,7 +37,7 @@ pub(crate) enum ColumnReference {
     Formula(ColumnFormula),
 }
 
-/// Checked `[[column]]`.
+/// Column as described by a `[[column]]` of a sidecar, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DescribedColumn {
     pub(crate) line: usize,
@@ -59,7 +59,7 @@ pub struct Sidecar {
     pub(crate) check: CheckKeys,
     pub(crate) columns: Vec<DescribedColumn>,
     pub(crate) rudder: RudderKeys,
-    pub(crate) noise: Noise,
+    pub(crate) noise: SensorNoise,
     /// Declared particulars and conditions for the form of MSC/Circ.1053.
     pub conditions: DeclaredConditions,
 }
@@ -188,7 +188,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
 /// Checks every value independently.
 fn check_values(text: &str, document: &DeTable) -> Result<(), LocatedProblem> {
     let values: toml::Table = text.parse().map_err(syntax)?;
-    for SidecarKey { key: name, value: kind, .. } in keys() {
+    for SidecarKey { key: name, value_kind: kind, .. } in keys() {
         let (table, key) = name.split_once(' ').unwrap_or(("", &name));
         let table = table.trim_matches(['[', ']']);
         let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|keys| keys.get(key)) };
@@ -218,10 +218,10 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, LocatedProblem> {
     let header = table.header.unwrap_or(true);
     let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
     let conditions = conditions(text, &document, ship, DeclaredConditions { weather, trial, ..form }.without_blanks())?;
-    let noise = Noise {
-        heading: noise.heading_deg.map(from_deg),
-        yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
-        rudder: noise.rudder_deg.map(from_deg),
+    let noise = SensorNoise {
+        heading_sd: noise.heading_deg.map(from_deg),
+        yaw_rate_sd: noise.yaw_rate_deg_s.map(from_deg),
+        rudder_sd: noise.rudder_deg.map(from_deg),
     };
     let sidecar = Sidecar { file: file.to_path_buf(), table, part, check, columns, rudder, noise, conditions };
     let (from_s, until_s) = sidecar.used_interval().into_inner();
@@ -233,7 +233,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, LocatedProblem> {
     Ok(sidecar)
 }
 
-/// Conditions declared by [form] and [ship] together; a particular known to both tables may be in either.
+/// Conditions declared by [form] and [ship] together; a key that both tables have may be in either.
 fn conditions(
     text: &str,
     document: &DeTable,
@@ -243,7 +243,7 @@ fn conditions(
     let declared = ship.is_some();
     let ShipKeys { mut hull, speed_kn } = ship.unwrap_or_default();
     if declared && (hull.length == 0.0 || (hull.speed == 0.0) == speed_kn.is_none()) {
-        return Err((span(document, "ship", ""), SidecarProblem::Ship));
+        return Err((span(document, "ship", ""), SidecarProblem::IncompleteShip));
     }
     let has_form = hull.has_more_than_length_and_speed();
     hull.speed = speed_kn.map_or(hull.speed, |speed| speed * KNOT);
@@ -265,6 +265,7 @@ fn conditions(
 
 fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<DescribedColumn, LocatedProblem> {
     let fault = |problem| Err((Some(column.span()), problem));
+    let invalid = |given| fault(SidecarProblem::InvalidColumnReference { given });
     let ColumnKeys { index, name, is, flip, scale, zero, formula, ignore } = column.get_ref();
     let which = match (index, name, formula) {
         (None, None, Some(formula)) => {
@@ -273,9 +274,9 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
                 (Some(formula.span()), SidecarProblem::Formula { problem })
             })?)
         }
-        (.., Some(_)) | (Some(_), Some(_), None) => return fault(SidecarProblem::Which { given: "both" }),
-        (None, None, None) => return fault(SidecarProblem::Which { given: "neither" }),
-        (Some(0), None, None) => return fault(SidecarProblem::Which { given: "index 0" }),
+        (.., Some(_)) | (Some(_), Some(_), None) => return invalid("both"),
+        (None, None, None) => return invalid("neither"),
+        (Some(0), None, None) => return invalid("index 0"),
         (Some(index), None, None) => ColumnReference::Index(index - 1),
         (None, Some(_), None) if !header => return fault(SidecarProblem::NameWithoutHeader),
         (None, Some(name), None) => ColumnReference::Name(name.trim().to_owned()),
@@ -286,7 +287,7 @@ fn described(column: &Spanned<ColumnKeys>, header: bool, text: &str) -> Result<D
     }
     let is_formula = matches!(which, ColumnReference::Formula(_));
     if !ignore && is.is_none() && (is_formula || !is_changed) {
-        return fault(if is_formula { formula_without_meaning() } else { SidecarProblem::Idle });
+        return fault(if is_formula { formula_without_meaning() } else { SidecarProblem::MissingDescription });
     }
     let number = |key: &str, value: Option<f64>, absent: f64| match value.unwrap_or(absent) {
         number if number.is_finite() && (number != 0.0 || key == "zero") => Ok(number),
@@ -352,7 +353,7 @@ mod tests {
         assert_eq!(sidecar.columns[0].meaning, quantity_unit_meaning("heading_rad"));
         let particulars = sidecar.conditions.particulars.expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
-        approx::assert_relative_eq!(sidecar.noise.rudder.expect("declared"), from_deg(0.2));
+        approx::assert_relative_eq!(sidecar.noise.rudder_sd.expect("declared"), from_deg(0.2));
         assert!(!sidecar.is_checked());
         let form = &sidecar.conditions;
         assert_eq!((form.ship_type.as_deref(), form.beam), (Some("tanker"), Some(58.0)));

@@ -12,11 +12,11 @@ use crate::file::FileError;
 #[derive(Debug, Error)]
 #[error("{}:{} {problem}", file.display(), line.map_or_else(String::new, |line| format!(" line {line}:")))]
 pub struct SidecarError {
-    /// Sidecar.
+    /// Path of the sidecar.
     pub file: PathBuf,
     /// Line, from 1; `None` for a problem of the whole file.
     pub line: Option<usize>,
-    /// Problem.
+    /// What is wrong.
     pub problem: SidecarProblem,
 }
 
@@ -36,12 +36,12 @@ pub enum SidecarProblem {
          rudder_deg, yaw_rate_deg_s, speed_m_s or speed_kn"
     )]
     UnknownQuantity { name: String },
-    /// Column without index and name, or with both.
+    /// Column with neither index nor name, with both, or with index 0.
     #[error("a [[column]] needs either `index` (from 1) or `name`, but this one has {given}")]
-    Which { given: &'static str },
+    InvalidColumnReference { given: &'static str },
     /// Column without a description.
     #[error("this [[column]] says nothing; add `is`, `flip = true`, `scale`, `zero` or `ignore = true`")]
-    Idle,
+    MissingDescription,
     /// `ignore` in addition to other keys.
     #[error("`ignore = true` leaves the column out, so other keys beside it mean nothing; remove one or the other")]
     IgnoredAndUsed,
@@ -60,18 +60,18 @@ pub enum SidecarProblem {
     /// Index above the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]
     IndexBeyond { index: usize, table: PathBuf, columns: usize },
-    /// Two entries for one column.
+    /// Two descriptions of a column.
     #[error("the column `{name}` is described twice; keep one [[column]] for it")]
     DescribedTwice { name: String },
     /// Column that keeps its name, which has no meaning.
     #[error("the column name `{name}` is unknown; add `is` to say what the column holds")]
-    NameSaysNothing { name: String },
+    UnknownColumnName { name: String },
     /// Part that ends before it begins, or with bounds that are not numbers.
     #[error("the part from {from_s} s until {until_s} s is empty; expected numbers with `from-s` below `until-s`")]
     Part { from_s: f64, until_s: f64 },
     /// Length or speed alone, or two speeds.
     #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
-    Ship,
+    IncompleteShip,
     /// Implausible particulars.
     #[error("{0}")]
     Particulars(Box<ParticularsError>),

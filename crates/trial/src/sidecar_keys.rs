@@ -206,12 +206,12 @@ pub struct SidecarKey {
     /// Table and key; the key alone if it is above the tables.
     pub key: String,
     /// Kind of the value.
-    pub value: String,
+    pub value_kind: String,
     /// Meaning of the key, and its default.
     pub meaning: String,
 }
 
-/// All keys, in the order of declaration.
+/// All keys of a sidecar in the order of declaration, and last the mark of a remark, `#`.
 pub fn keys() -> Vec<SidecarKey> {
     let schema = schema();
     let properties = |schema: &serde_json::Value| schema["properties"].as_object().cloned().unwrap_or_default();
@@ -224,12 +224,12 @@ pub fn keys() -> Vec<SidecarKey> {
         };
         for (key, entry) in entries {
             let description = entry["description"].as_str().unwrap_or_default();
-            let (meaning, value) = description.rsplit_once(" (").unwrap_or((description, ")"));
-            let value = value.trim_end_matches(')').to_owned();
-            keys.push(SidecarKey { key: format!("{table}{key}"), value, meaning: meaning.to_owned() });
+            let (meaning, value_kind) = description.rsplit_once(" (").unwrap_or((description, ")"));
+            let value_kind = value_kind.trim_end_matches(')').to_owned();
+            keys.push(SidecarKey { key: format!("{table}{key}"), value_kind, meaning: meaning.to_owned() });
         }
     }
-    let [key, value, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);
-    keys.push(SidecarKey { key, value, meaning });
+    let [key, value_kind, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);
+    keys.push(SidecarKey { key, value_kind, meaning });
     keys
 }

@@ -36,23 +36,23 @@ impl TrialParticulars {
         }
     }
 
-    /// Draughts fore and aft, m; `None` unless both are known.
+    /// Draughts fore and aft, m; `None` unless both are declared.
     pub fn draughts(&self) -> Option<[f64; 2]> {
         Some([self.draught_fore?, self.draught_aft?])
     }
 
-    /// Mean of the draughts fore and aft, m; `None` unless both are known.
+    /// Mean of the draughts fore and aft, m; `None` unless both are declared.
     pub fn mean_draught(&self) -> Option<f64> {
         self.draughts().map(|[fore, aft]| 0.5 * (fore + aft))
     }
 
-    /// `true` if a mean draught is between the draughts fore and aft, or if one of these is unknown.
+    /// `true` if a mean draught (m) is between the draughts fore and aft, or if either is undeclared.
     pub fn admits(&self, draught: f64) -> bool {
         self.draughts().is_none_or(|[fore, aft]| (fore.min(aft)..=fore.max(aft)).contains(&draught))
     }
 
-    /// Trim, m, positive by the stern; `None` unless both draughts are known. It is rounded to a tenth of a millimetre,
-    /// as a difference of two written numbers.
+    /// Trim, m, positive by the stern; `None` unless both draughts are declared. It is rounded to a tenth of a
+    /// millimetre, as a difference of two written numbers.
     pub(crate) fn trim(&self) -> Option<f64> {
         self.draughts().map(|[fore, aft]| (1e4 * (aft - fore)).round() / 1e4)
     }

@@ -32,7 +32,7 @@ pub(crate) fn rounded_to_thousandth(time: f64) -> ShortNumber {
     ShortNumber((1e3 * time).round() / 1e3)
 }
 
-/// End of a part of a record, as ` from 12 s`; empty for an end that is not given (infinite).
+/// Text of a bound of a part of a record, such as ` from 12 s`; empty for an infinite bound.
 pub(crate) fn interval_end(word: &str, time: f64) -> String {
     if time.is_finite() { format!(" {word} {} s", rounded_to_thousandth(time)) } else { String::new() }
 }

@@ -8,7 +8,7 @@ use ship::Particulars;
 use ship::angle::to_deg;
 
 use crate::channel::{Channel, TIME_COLUMN};
-use crate::record::{Noise, Trial};
+use crate::record::{SensorNoise, Trial};
 
 /// Writes `trial` as CSV: `t_s`, then its channels in the order of [`Channel::ALL`] (angles in degrees), then its
 /// columns with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is
@@ -49,8 +49,8 @@ pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
 pub fn sidecar_toml(trial: &Trial) -> Option<String> {
     let ship = |Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n");
     let calm = trial.is_calm().then(|| String::from("weather = \"none\"\n"));
-    let Noise { heading, yaw_rate, rudder } = trial.noise();
-    let kinds = [("heading-deg", heading), ("yaw-rate-deg-s", yaw_rate), ("rudder-deg", rudder)];
+    let SensorNoise { heading_sd, yaw_rate_sd, rudder_sd } = trial.noise();
+    let kinds = [("heading-deg", heading_sd), ("yaw-rate-deg-s", yaw_rate_sd), ("rudder-deg", rudder_sd)];
     let noise: String =
         kinds.iter().filter_map(|(key, sd)| Some(format!("{key} = {:?}\n", short(to_deg((*sd)?))))).collect();
     let noise = (!noise.is_empty()).then(|| format!("[noise]\n{noise}"));

@@ -9,7 +9,7 @@ use campaign::design::Design;
 use campaign::failure::Failure;
 use campaign::files;
 use campaign::manifest::Manifest;
-use campaign::rows::{BlockLabel, Damage, RowLayout, decode};
+use campaign::rows::{BlockFileError, BlockLabel, RowLayout, decode};
 use campaign::scenario::Scenario;
 use campaign::summary::Tally;
 use identify::{Identifier, registry};
@@ -131,7 +131,7 @@ pub fn find(data: &[u8]) -> bool {
             first <= manoeuvre.from && manoeuvre.from < manoeuvre.until && manoeuvre.until <= last,
             "{manoeuvre:?}"
         );
-        assert!((manoeuvre.from..=manoeuvre.until).contains(&manoeuvre.start), "{manoeuvre:?}");
+        assert!((manoeuvre.from..=manoeuvre.until).contains(&manoeuvre.first_execute), "{manoeuvre:?}");
     }
     assert!(found.is_sorted_by(|one, next| one.from < next.from), "manoeuvres out of order");
     !found.is_empty()
@@ -202,8 +202,8 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
             drop(tables::summary_in_brief(&summary, design).to_markdown());
             !tables::summary(&summary.methods, design).to_csv().is_empty()
         }
-        Err(Damage::Changed(problem)) => is_one_message(&problem),
-        Err(Damage::Foreign(other)) => other != label,
+        Err(BlockFileError::Changed(problem)) => is_one_message(&problem),
+        Err(BlockFileError::OtherBlock(other)) => other != label,
     }
 }
 

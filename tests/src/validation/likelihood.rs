@@ -73,8 +73,12 @@ pub fn section() -> Section {
     let trial = uneven();
     let ship = FirstOrder::from_indices(0.1, 16.3, from_deg(0.4));
     let compass = NoiseModel::compass(from_deg(0.1));
-    let of =
-        |moment, moment_level, moment_correlation| NoiseModel { moment, moment_level, moment_correlation, ..compass };
+    let of = |moment, moment_level, moment_correlation_time| NoiseModel {
+        moment,
+        moment_level,
+        moment_correlation_time,
+        ..compass
+    };
     let gusts = of(MomentKind::OrnsteinUhlenbeck, 3.490658504e-4, 12.0);
     for (noise, published, decimals) in [
         (compass, -84_499.009_4, 4),

@@ -14,8 +14,8 @@ use trace::candidates;
 use trace::fit::{FittedRecords, StoppingRule, StructureFit};
 use trace::full::start_point;
 use trace::model::Structure;
+use trace::noise_law::NoiseLaw;
 use trace::record::PreparedRecord;
-use trace::weights::NoiseLaw;
 use trace::{EffectId, Selection};
 
 use super::{Check, Section, Tolerance};
@@ -141,17 +141,18 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let term = term.expect("a candidate");
     let own = Structure::base(1, time);
     let structure = own.with_terms(vec![Arc::clone(&term)]);
-    let weights = problem.weights(&NoiseLaw::white(1, from_deg(NOISE).powi(2)));
+    let whitening = problem.whitening(&NoiseLaw::white(1, from_deg(NOISE).powi(2)));
     let starts = [term.priors.iter().map(|prior| prior.mean).collect(), term.neutral()];
     let fits = starts.map(|values: Vec<f64>| {
         let theta = start_point(&own, &base, values.into_iter());
-        problem.fit(&structure, theta, vec![replay.initial()], &weights, EFFORT)
+        problem.fit(&structure, theta, vec![replay.initial_state()], &whitening, EFFORT)
     });
     let height = |fit: &StructureFit| fit.misfit + fit.penalty;
     let best = fits.into_iter().min_by(|one, other| height(one).total_cmp(&height(other))).expect("two starts");
     let square: f64 = best.residual.iter().flatten().map(|e| e * e).sum();
     let rms = to_deg((square / problem.observations() as f64).sqrt());
-    (to_deg(replay.rms()), base.K(), base.T(), rms, structure.physical(&best.theta)[own.base_count()..].to_vec())
+    let terms = structure.physical(&best.theta)[own.base_parameter_count()..].to_vec();
+    (to_deg(replay.rms()), base.K(), base.T(), rms, terms)
 }
 
 /// Section of the checks.

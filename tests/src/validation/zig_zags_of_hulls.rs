@@ -105,7 +105,7 @@ impl Anchor {
     fn simulation(&self, way: Way, duration: f64) -> Simulation {
         let ship = registered(self.ship);
         let vessel = if way == Way::Stepped && self.ship == "kvlcc2-l7" {
-            let parameters = ship::vessel::mmg::Parameters { d: OTHER_DRAUGHT, ..kvlcc2::MODEL_L7 };
+            let parameters = ship::vessel::mmg::MmgParameters { d: OTHER_DRAUGHT, ..kvlcc2::MODEL_L7 };
             SimulatedShip::from_dynamics(Arc::new(Mmg::at_speed(parameters, 1.179).expect("the set balances")))
         } else {
             SimulatedShip::from_ship(&ship)

@@ -18,7 +18,8 @@ pub struct Leaderboard {
     /// Task.
     pub task: BenchTask,
     /// Study of the records.
-    pub field: String,
+    #[serde(rename = "field")]
+    pub study: String,
     /// Number of cases.
     pub cases: usize,
     /// Number of trials or scored records that the bootstrap resamples; cases of one cluster are not independent.
@@ -74,10 +75,10 @@ impl WilsonShare {
     }
 }
 
-/// Leaderboards of all tasks that have a score, one per task and study.
+/// Leaderboards of all tasks that have a score, one per task and study; `reference` labels the reference method.
 pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Leaderboard> {
-    let scored = by_task_and_study(cases, |task| task.score().is_some());
-    scored.into_iter().map(|((task, field), group)| leaderboard(task, field, &group, methods, reference)).collect()
+    let scored = by_task_and_study(cases, |task| task.score_label().is_some());
+    scored.into_iter().map(|((task, study), group)| leaderboard(task, study, &group, methods, reference)).collect()
 }
 
 /// Cases of the selected tasks, grouped by task and study.
@@ -85,7 +86,7 @@ pub(super) fn by_task_and_study(
     cases: &[BenchCase],
     is_wanted: impl Fn(BenchTask) -> bool,
 ) -> Vec<((BenchTask, &str), Vec<&BenchCase>)> {
-    grouped(cases.iter().filter(|case| is_wanted(case.task)), |case| (case.task, case.field.as_str()))
+    grouped(cases.iter().filter(|case| is_wanted(case.task)), |case| (case.task, case.study.as_str()))
 }
 
 /// Scores of a set of cases.
@@ -120,7 +121,7 @@ impl Scores {
     }
 }
 
-fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Leaderboard {
+fn leaderboard(task: BenchTask, study: &str, cases: &[&BenchCase], methods: &[String], reference: &str) -> Leaderboard {
     let scores = Scores::from_cases(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, values)): (usize, &(String, Vec<f64>))| {
@@ -149,7 +150,7 @@ fn leaderboard(task: BenchTask, field: &str, cases: &[&BenchCase], methods: &[St
     };
     let mut standings: Vec<LeaderboardRow> = scores.methods.iter().enumerate().map(row).collect();
     standings.sort_by(|a, b| a.median.order(&b.median).then(a.quantile_90.order(&b.quantile_90)));
-    Leaderboard { task, field: field.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
+    Leaderboard { task, study: study.to_owned(), cases: cases.len(), clusters: scores.clusters.len(), standings }
 }
 
 /// Coverage of the intervals of a method, for K and T; `None` without intervals.
@@ -169,13 +170,14 @@ pub struct SetLine {
     pub set: String,
     /// Number of cases.
     pub cases: usize,
-    /// Median and number of failures of every method; `None` for a method that takes no part.
+    /// Median score and number of failures of every method; `None` for a method that takes no part. A median that falls
+    /// on a failed estimate is infinite.
     pub methods: Vec<Option<(f64, usize)>>,
 }
 
 /// Medians of all methods, by task and set.
 pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
-    let scored = cases.iter().filter(|case| case.task.score().is_some());
+    let scored = cases.iter().filter(|case| case.task.score_label().is_some());
     let line = |((task, set), group): ((BenchTask, &str), Vec<&BenchCase>)| {
         let scores = Scores::from_cases(&group, methods);
         let figures = |method: &String| {
@@ -200,7 +202,7 @@ mod tests {
         });
         BenchCase {
             task: BenchTask::Circle,
-            field: "made".into(),
+            study: "made".into(),
             set: "s".into(),
             trial: Some(trial),
             fitted: vec!["zigzag".into()],

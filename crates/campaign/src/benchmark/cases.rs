@@ -27,7 +27,7 @@ impl BenchTask {
     pub const ALL: [Self; 6] =
         [Self::Identify, Self::Indices, Self::OtherSide, Self::OtherAmplitude, Self::Circle, Self::Name];
 
-    /// Word used in files and on the command line.
+    /// Identifier in files and on the command line.
     pub fn id(self) -> &'static str {
         match self {
             Self::Identify => "identify",
@@ -52,7 +52,7 @@ impl BenchTask {
     }
 
     /// Name and unit of the score; `None` if a result is right or wrong.
-    pub fn score(self) -> Option<&'static str> {
+    pub fn score_label(self) -> Option<&'static str> {
         match self {
             Self::Indices => Some("larger error of K and T [%]"),
             Self::Name => None,
@@ -68,7 +68,8 @@ pub struct BenchCase {
     /// Task.
     pub task: BenchTask,
     /// Study under which the case is counted.
-    pub field: String,
+    #[serde(rename = "field")]
+    pub study: String,
     /// Name of the set.
     pub set: String,
     /// Number of a simulated trial in its set.
@@ -195,7 +196,8 @@ impl Naming {
 }
 
 impl BenchCase {
-    /// Cluster of the bootstrap: all cases of one simulated trial, or all cases in which one measured record is scored.
+    /// Key of the cluster of the bootstrap: the set, with the number of the simulated trial or the name of the scored
+    /// measured record.
     pub fn cluster(&self) -> (&str, String) {
         let unit = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
         (&self.set, unit)

@@ -32,7 +32,7 @@ const SIDECARS: &[(&str, &str)] = files![
     "zigzag_14_10_05.trial.toml",
 ];
 
-/// Writes all files into a folder; returns the paths of the scenarios.
+/// Writes the scenarios and sidecars into a folder; returns the paths of the scenarios, in their order.
 pub fn unpack(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let folder = ResultFolder::make(folder)?;
     for (name, files) in FOLDERS.iter().zip([SCENARIOS, SIDECARS]) {

@@ -45,7 +45,7 @@ fn line(method: &str, set: &str, cases: &[&BenchCase]) -> Option<NamingLine> {
 }
 
 /// Sum of the lines of a method over all sets with a missing effect, or over all without; `None` if there is no such
-/// line.
+/// line. Set and effect of the sum are those of its first line.
 pub fn total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<NamingLine> {
     let selected = lines.iter().filter(|line| line.method == method && line.missing.is_some() == is_missing);
     let joined = selected.cloned().reduce(|sum, line| NamingLine {

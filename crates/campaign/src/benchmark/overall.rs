@@ -21,10 +21,10 @@ pub struct OverallRanking {
 /// Ranking over the tasks that predict a record outside the fit; `None` if there is no such task.
 pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
-    let fields = by_task_and_study(cases, is_prediction);
-    let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
+    let groups = by_task_and_study(cases, is_prediction);
+    let boards = groups.iter().map(|((task, study), _)| (*task, (*study).to_owned())).collect();
     // Every method takes part in every prediction.
-    let of_boards: Vec<MeanRanks> = fields.iter().map(|(_, cases)| MeanRanks::from_cases(cases, methods)).collect();
+    let of_boards: Vec<MeanRanks> = groups.iter().map(|(_, cases)| MeanRanks::from_cases(cases, methods)).collect();
     let first = of_boards.first()?;
     let clusters = of_boards.iter().map(|board| board.clusters).sum();
     let standing = |(place, method): (usize, &String)| {

@@ -102,7 +102,7 @@ impl BenchDocument {
 
     /// Names of the studies that have a leaderboard, in order.
     pub fn study_names(&self) -> Vec<&str> {
-        distinct(self.boards.iter().map(|board| board.field.as_str()))
+        distinct(self.boards.iter().map(|board| board.study.as_str()))
     }
 
     /// JSON text: indented, with one line per case.

@@ -18,7 +18,7 @@ pub struct ScoreFigure {
 }
 
 impl ScoreFigure {
-    /// Statistic with the interval of its resampled values, in any order.
+    /// Statistic with the percentile interval of its resampled values, in any order; no interval below six clusters.
     pub fn new(value: f64, clusters: usize, resampled: Vec<f64>) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         Self { value: finite(value), ci95: percentile_interval(clusters, resampled).map(|ends| ends.map(finite)) }
@@ -38,7 +38,7 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     if moments.count > 0.0 { moments.mean } else { f64::NAN }
 }
 
-/// Median and 90 % quantile of scores.
+/// Median and 90 % quantile of scores; infinite if it falls on a failed estimate.
 pub fn median_and_p90(mut scores: Vec<f64>) -> [f64; 2] {
     scores.sort_by(f64::total_cmp);
     [0.5, 0.9].map(|p| quantile(&scores, p))

@@ -141,7 +141,7 @@ impl CellTasks {
     }
 }
 
-/// Cases of a study with these rows, in the order of the design.
+/// Cases of a study from its rows, which are in the order of the design.
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
     let lacks = |cell: &DesignCell| cell.missing_effects().iter().any(|id| id != HULL);
     let is_of_names = scenario.cells.iter().any(lacks);
@@ -168,7 +168,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
             let answer = |row: &StudyRow| answer(task, row, &cell.methods[row.method], missing.as_deref());
             cases.push(BenchCase {
                 task,
-                field: scenario.name.clone(),
+                study: scenario.name.clone(),
                 set: questions.set.clone(),
                 trial,
                 fitted: fitted_names.clone(),
@@ -243,7 +243,8 @@ fn named(trace: &TraceRow) -> Vec<Vec<String>> {
     trace.named.iter().map(group).collect()
 }
 
-/// Relative errors of K and T of a first-order ship, %, and whether the intervals contain the truth.
+/// Result with the relative errors of K and T of a first-order ship, %, the larger as score, and whether the intervals
+/// contain the truth; `None` unless both have an estimate.
 fn indices(row: &StudyRow) -> Option<CaseAnswer> {
     let [k, t, _] = row.errors();
     let errors = [k?, t?].map(|error| rounded(100.0 * error));

@@ -37,10 +37,10 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &Com
     track.sensitivity(a, &coefficients, &mut by_inverse_time);
     let MotionColumns { homogeneous, rudder, constant, .. } = columns;
     let mut sensitivities = [by_inverse_time, rudder, constant, vec![1.0; track.len()], homogeneous];
-    let times: Vec<f64> = track.observed.iter().map(|&row| track.time[row]).collect();
+    let times: Vec<f64> = track.heading_rows.iter().map(|&row| track.time[row]).collect();
     whiten(&times, error, &mut sensitivities);
     let product = |i: usize, j: usize| sensitivities[i].iter().zip(&sensitivities[j]).map(|(x, y)| x * y).sum::<f64>();
-    // In units for which every parameter alone would have a standard deviation of 1.
+    // Information in units in which every parameter alone would have a standard deviation of 1.
     let unit: [f64; 5] = std::array::from_fn(|k| product(k, k).sqrt());
     let information = Matrix5::from_fn(|i, j| product(i, j) / (unit[i] * unit[j]));
     let covariance = information.cholesky()?.inverse();
@@ -103,7 +103,7 @@ mod tests {
                 let noise = NoiseModel::compass(from_deg(sd_deg));
                 maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known").matrix
             };
-            let noise = NoiseModel { heading_correlation: Some(10.0), ..NoiseModel::compass(from_deg(0.3)) };
+            let noise = NoiseModel { heading_correlation_time: Some(10.0), ..NoiseModel::compass(from_deg(0.3)) };
             let coloured = maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known");
             let pairs = [
                 (bound(0.1, 1e-6, 10.0), white(0.1)),

@@ -20,25 +20,25 @@ static FAULTS: Mutex<Vec<DiskFault>> = Mutex::new(Vec::new());
 static ARMED: AtomicUsize = AtomicUsize::new(0);
 
 /// Guard of an armed fault: operations below its folder fail until it is dropped.
-pub struct Armed(PathBuf);
+pub struct FaultGuard(PathBuf);
 
 /// Makes the operations below `root` with these numbers, counted from 0, fail.
-pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
+pub fn arm(root: &Path, failing: Range<u64>) -> FaultGuard {
     let fault = DiskFault { root: root.to_owned(), failing, seen: 0 };
     FAULTS.lock().unwrap_or_else(PoisonError::into_inner).push(fault);
     ARMED.fetch_add(1, Ordering::SeqCst);
-    Armed(root.to_owned())
+    FaultGuard(root.to_owned())
 }
 
-impl Armed {
-    /// Number of operations so far.
+impl FaultGuard {
+    /// Number of operations below the folder so far.
     pub fn seen(&self) -> u64 {
         let faults = FAULTS.lock().unwrap_or_else(PoisonError::into_inner);
         faults.iter().find(|fault| fault.root == self.0).map_or(0, |fault| fault.seen)
     }
 }
 
-impl Drop for Armed {
+impl Drop for FaultGuard {
     fn drop(&mut self) {
         FAULTS.lock().unwrap_or_else(PoisonError::into_inner).retain(|fault| fault.root != self.0);
         ARMED.fetch_sub(1, Ordering::SeqCst);
@@ -46,7 +46,7 @@ impl Drop for Armed {
 }
 
 /// Counts an operation on a path, and fails if a test makes this operation fail.
-pub(super) fn strike(path: &Path) -> io::Result<()> {
+pub(super) fn check_operation(path: &Path) -> io::Result<()> {
     if ARMED.load(Ordering::Relaxed) == 0 {
         return Ok(());
     }

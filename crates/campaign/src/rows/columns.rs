@@ -8,7 +8,7 @@ use identify::StopReason;
 use serde::Deserialize;
 use serde::de::value::{Error as UnknownWord, StrDeserializer};
 
-use super::row::{EffectSize, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};
+use super::row::{EffectParameterValue, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};
 
 /// Fixed column of a file of rows.
 pub struct RowColumn {
@@ -113,20 +113,20 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
         => traced(margin);
     "trace_expected",
     "likelihood ratio of the truth against the nearest first-order response, on average over the noise"
-        => traced(expected);
+        => traced(expected_2_ln_lambda);
     "trace_band_fitted",
     "share of the headings of the trial inside the 95 % band of the traced model; null where there is no band"
-        => traced(band_fitted);
+        => traced(fitted_band_coverage);
     "trace_band_held_out",
     "the same on the validation manoeuvre, which has no noise: the band is that of the parameters alone"
-        => traced(band_held_out);
+        => traced(validation_band_coverage);
 };
 
 /// Further columns of a study of measured records.
 pub const RECORD_COLUMNS: [RowColumn; 2] = columns! {
     "validation_60_s_rmse_deg",
     "in a study of measured records: rms error of the heading on the held-out record, its replay restarted every 60 s"
-        => number(validation_windows_deg);
+        => number(validation_60_s_rmse_deg);
     "trace_sizes",
     "in a study of measured records: parameters of the effects named, joined by + and those of one effect by |: symbol, \
      with a prime where it is without dimension, =value, and ± with its standard deviation where it is fitted"
@@ -202,7 +202,7 @@ fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
     Some(joined(&row.traced.as_ref()?.named, group))
 }
 
-/// Aliases of the effects, which are named in an earlier column.
+/// Sets the aliases of the effects that an earlier column has named.
 fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let group = |part: &str| {
         let mut ids = part.split('|').filter(|id| !id.is_empty()).map(Box::from);
@@ -220,20 +220,20 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
 /// Column of the parameters of the named effects: `symbol=value±sd`, joined by `|` in an effect and by `+` between
 /// them.
 fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
-    let size = |EffectSize { symbol, value, sd }: &EffectSize| {
+    let size = |EffectParameterValue { symbol, value, sd }: &EffectParameterValue| {
         format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))
     };
-    let effect = |effect: &NamedEffect| effect.sizes.iter().map(size).collect::<Vec<_>>().join("|");
+    let effect = |effect: &NamedEffect| effect.parameters.iter().map(size).collect::<Vec<_>>().join("|");
     Some(joined(&row.traced.as_ref()?.named, effect))
 }
 
-/// Sets the parameter sizes of the effects that an earlier column has named.
+/// Sets the parameters of the effects that an earlier column has named.
 fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let size = |part: &str| {
         let (symbol, number) = part.split_once('=')?;
         let (value, sd) = number.split_once('±').map_or((number, None), |(value, sd)| (value, Some(sd)));
         let sd = sd.map(str::parse).transpose().ok()?;
-        Some(EffectSize { symbol: symbol.into(), value: value.parse().ok()?, sd })
+        Some(EffectParameterValue { symbol: symbol.into(), value: value.parse().ok()?, sd })
     };
     let effect = |part: &str| part.split('|').filter(|size| !size.is_empty()).map(size).collect::<Option<Vec<_>>>();
     let fault = || format!("{text:?} does not list the parameters of the effects named");
@@ -243,7 +243,7 @@ fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
         return Err(fault());
     }
     for (named, part) in named.iter_mut().zip(parts) {
-        named.sizes = effect(part).ok_or_else(fault)?;
+        named.parameters = effect(part).ok_or_else(fault)?;
     }
     Ok(())
 }

@@ -19,7 +19,7 @@ use trial::decoder::{CheckedPages, PageHead};
 use super::layout::RowLayout;
 use super::row::StudyRow;
 use crate::block::Block;
-use crate::parquet_table::{self, Values};
+use crate::parquet_table::{self, ColumnValues};
 use crate::scenario::hex;
 
 /// Metadata key of the label.
@@ -41,7 +41,7 @@ const MAX_PAGE_VALUES: u64 = 1 << 20;
 
 /// `true` if a page is within the limits of a block.
 fn fits(page: PageHead) -> bool {
-    page.unpacked <= MAX_PAGE_BYTES && page.values <= MAX_PAGE_VALUES
+    page.unpacked_bytes <= MAX_PAGE_BYTES && page.values <= MAX_PAGE_VALUES
 }
 
 /// Label of a block: its study, program and position.
@@ -77,21 +77,21 @@ struct SealedLabel {
 
 /// Reason why a file is not the expected block.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Damage {
+pub enum BlockFileError {
     /// Damaged or altered; the text describes how.
     Changed(String),
     /// Block of another study, seed, program or position, according to its sound label.
-    Foreign(BlockLabel),
+    OtherBlock(BlockLabel),
 }
 
-impl From<String> for Damage {
+impl From<String> for BlockFileError {
     fn from(problem: String) -> Self {
         Self::Changed(problem)
     }
 }
 
 /// SHA-256 of the injective encodings of columns in their order, hexadecimal.
-fn values_hash(columns: &[Values]) -> String {
+fn values_hash(columns: &[ColumnValues]) -> String {
     let mut digest = Sha256::new();
     let mut bytes = Vec::new();
     for column in columns {
@@ -102,7 +102,7 @@ fn values_hash(columns: &[Values]) -> String {
     hex(&digest.finalize())
 }
 
-/// Parquet file of a block.
+/// Bytes of the Parquet file of a block.
 pub fn encode(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> Result<Vec<u8>, String> {
     written(rows, label, layout).map_err(|error| error.to_string())
 }
@@ -113,7 +113,7 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
         properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
     }
     let mut file = SerializedFileWriter::new(Vec::new(), layout.schema(), Arc::new(properties.build()))?;
-    let columns: Vec<Values> = layout.value_columns(rows).collect();
+    let columns: Vec<ColumnValues> = layout.value_columns(rows).collect();
     let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: values_hash(&columns) };
     parquet_table::write_group(&mut file, columns)?;
     let label = serde_json::to_string(&label).expect("texts and numbers");
@@ -126,10 +126,10 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
 /// Rows of a block: complete trials, from the first of the block on.
 ///
 /// Fails unless [`encode`] wrote the file for this block of this study and program.
-pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
-    let damaged = || Damage::Changed("it is damaged".to_owned());
+pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, BlockFileError> {
+    let damaged = || BlockFileError::Changed("it is damaged".to_owned());
     let rows = trial::decoder::catch_panic(|| read_file(bytes, expected, layout)).unwrap_or_else(|| Err(damaged()))?;
-    let methods = layout.methods();
+    let methods = layout.method_count();
     let is_next = |(place, row): (usize, &StudyRow)| {
         let replicate = expected.block * Block::REPLICATES + (place / methods) as u64;
         (row.cell, row.replicate, row.method) == (expected.cell as u64, replicate, place % methods)
@@ -137,16 +137,16 @@ pub fn decode(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resu
     let most = Block::REPLICATES as usize * methods;
     match rows.len().is_multiple_of(methods) && rows.len() <= most && rows.iter().enumerate().all(is_next) {
         true => Ok(rows),
-        false => Err(Damage::Changed("its rows are not complete trials in order".to_owned())),
+        false => Err(BlockFileError::Changed("its rows are not complete trials in order".to_owned())),
     }
 }
 
-fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, Damage> {
+fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Result<Vec<StudyRow>, BlockFileError> {
     let message = |error: parquet::errors::ParquetError| error.to_string();
     let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(message)?;
     let SealedLabel { label, rows, values_sha256 } = label_of(file.metadata().file_metadata())?;
     if label != *expected {
-        return Err(Damage::Foreign(label));
+        return Err(BlockFileError::OtherBlock(label));
     }
     let schema = file.metadata().file_metadata().schema_descr_ptr();
     if *schema.root_schema() != *layout.schema() || file.num_row_groups() != 1 {
@@ -155,13 +155,13 @@ fn read_file(bytes: Vec<u8>, expected: &BlockLabel, layout: &RowLayout) -> Resul
     let group = file.metadata().row_group(0);
     let is_sound = |size: i64| (0..=MAX_COLUMN_BYTES).contains(&size);
     let sizes = group.columns().iter().map(|column| column.uncompressed_size());
-    let most = Block::REPLICATES as usize * layout.methods();
+    let most = Block::REPLICATES as usize * layout.method_count();
     if rows > most || group.num_rows() != rows as i64 || !sizes.into_iter().all(is_sound) {
         return Err("its number of rows differs from its label".to_owned().into());
     }
     let group = file.get_row_group(0).map_err(message)?;
     let column = |place: usize| values(&mut group.get_column_reader(place).map_err(message)?, rows);
-    let columns: Vec<Values> = (0..group.num_columns()).map(column).collect::<Result<_, String>>()?;
+    let columns: Vec<ColumnValues> = (0..group.num_columns()).map(column).collect::<Result<_, String>>()?;
     if values_hash(&columns) != values_sha256 {
         return Err("the SHA-256 of its values differs from its label".to_owned().into());
     }
@@ -180,13 +180,13 @@ fn label_of(file: &FileMetaData) -> Result<SealedLabel, String> {
     serde_json::from_str(label).map_err(|error| error.to_string())
 }
 
-fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
+fn values(column: &mut ColumnReader, length: usize) -> Result<ColumnValues, String> {
     Ok(match column {
-        ColumnReader::Int64ColumnReader(reader) => Values::Counts(read(reader, length)?),
-        ColumnReader::DoubleColumnReader(reader) => Values::Numbers(read(reader, length)?),
+        ColumnReader::Int64ColumnReader(reader) => ColumnValues::Counts(read(reader, length)?),
+        ColumnReader::DoubleColumnReader(reader) => ColumnValues::Numbers(read(reader, length)?),
         ColumnReader::ByteArrayColumnReader(reader) => {
             let texts = read(reader, length)?.into_iter().map(|bytes| bytes.map(|bytes| text(&bytes)).transpose());
-            Values::Texts(texts.collect::<Result<_, _>>()?)
+            ColumnValues::Texts(texts.collect::<Result<_, _>>()?)
         }
         _ => unreachable!("the schema was compared before"),
     })

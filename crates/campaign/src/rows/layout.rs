@@ -10,8 +10,8 @@ use super::columns::{
     Access, BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
 };
 use super::row::StudyRow;
-use crate::design::{Design, JudgedRecord};
-use crate::parquet_table::{self, Values};
+use crate::design::{Design, TrialRecords};
+use crate::parquet_table::{self, ColumnValues};
 use crate::scenario::TRACE;
 
 /// Row layout of one study: fixed columns, axes, sampled values and records.
@@ -19,17 +19,17 @@ pub struct RowLayout {
     methods: Vec<String>,
     fixed: Vec<&'static RowColumn>,
     /// Names of the axes, each with the points of the cells.
-    axes: Vec<(String, Values)>,
+    axes: Vec<(String, ColumnValues)>,
     /// Records of every trial, by cell, in a study of measured records; `None` for simulated trials.
-    records: Option<Vec<Vec<JudgedRecord>>>,
+    records: Option<Vec<Vec<TrialRecords>>>,
     draws: Vec<String>,
 }
 
 /// Source of the values of a column.
 enum ColumnSource<'a> {
     Fixed(&'static RowColumn),
-    Axis(&'a str, &'a Values),
-    Record(fn(&JudgedRecord) -> Option<&str>, &'a [Vec<JudgedRecord>]),
+    Axis(&'a str, &'a ColumnValues),
+    Record(fn(&TrialRecords) -> Option<&str>, &'a [Vec<TrialRecords>]),
     Draw(usize),
 }
 
@@ -40,7 +40,7 @@ impl RowLayout {
             let numbers: Vec<Option<f64>> = design.cells.iter().map(|cell| cell.values[index]).collect();
             let labels = || design.cells.iter().map(|cell| Some(cell.labels[index].clone())).collect();
             let is_number = numbers.iter().all(Option::is_some);
-            (name.clone(), if is_number { Values::Numbers(numbers) } else { Values::Texts(labels()) })
+            (name.clone(), if is_number { ColumnValues::Numbers(numbers) } else { ColumnValues::Texts(labels()) })
         };
         let is_traced = design.methods.iter().any(|method| method.id == TRACE);
         let groups = [
@@ -61,7 +61,7 @@ impl RowLayout {
     }
 
     /// Number of methods.
-    pub fn methods(&self) -> usize {
+    pub fn method_count(&self) -> usize {
         self.methods.len()
     }
 
@@ -71,9 +71,9 @@ impl RowLayout {
         let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
         let draws = self.draws.iter().enumerate().map(|(at, key)| (format!("draw.{key}"), ColumnSource::Draw(at)));
         let records = self.records.iter().flat_map(|records| {
-            let fitted: fn(&JudgedRecord) -> Option<&str> = |record| Some(record.fitted.as_str());
-            let judge: fn(&JudgedRecord) -> Option<&str> = |record| record.validation.as_deref();
-            [("fitted", fitted), ("judge", judge)]
+            let fitted: fn(&TrialRecords) -> Option<&str> = |record| Some(record.fitted.as_str());
+            let validation: fn(&TrialRecords) -> Option<&str> = |record| record.validation.as_deref();
+            [("fitted", fitted), ("judge", validation)]
                 .map(|(name, of)| (name.to_owned(), ColumnSource::Record(of, records.as_slice())))
         });
         fixed.chain(axes).chain(draws).chain(records)
@@ -92,7 +92,7 @@ impl RowLayout {
                     (Physical::INT64, Repetition::REQUIRED, None)
                 }
                 ColumnSource::Fixed(RowColumn { access: Access::Text(..) | Access::Method, .. })
-                | ColumnSource::Axis(_, Values::Texts(_))
+                | ColumnSource::Axis(_, ColumnValues::Texts(_))
                 | ColumnSource::Record(..) => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
                 _ => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             };
@@ -121,46 +121,54 @@ impl RowLayout {
     }
 
     /// Columns of rows, in order.
-    pub(super) fn value_columns<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
+    pub(super) fn value_columns<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = ColumnValues> + 'a {
         self.columns().map(move |(_, source)| match source {
             ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
-                Access::Count(get, _) => Values::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),
-                Access::Number(get, _) => Values::Numbers(rows.iter().map(get).collect()),
-                Access::Text(get, _) => Values::Texts(rows.iter().map(|row| get(row).map(Cow::into_owned)).collect()),
+                Access::Count(get, _) => ColumnValues::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),
+                Access::Number(get, _) => ColumnValues::Numbers(rows.iter().map(get).collect()),
+                Access::Text(get, _) => {
+                    ColumnValues::Texts(rows.iter().map(|row| get(row).map(Cow::into_owned)).collect())
+                }
                 Access::Method => {
-                    Values::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
+                    ColumnValues::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
                 }
             },
             ColumnSource::Axis(_, points) => points.for_rows(rows),
             ColumnSource::Record(of, records) => record_names(of, records, rows),
             ColumnSource::Draw(index) => {
-                Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
+                ColumnValues::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
             }
         })
     }
 
     /// Rows from all columns, each of `length` values. Fails for a value that the design does not allow, and names it.
-    pub(super) fn rows_from(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
+    pub(super) fn rows_from(&self, columns: Vec<ColumnValues>, length: usize) -> Result<Vec<StudyRow>, String> {
         let mut rows = vec![StudyRow::default(); length];
         let mut drawn = vec![vec![None; self.draws.len()]; length];
         for ((_, source), values) in self.columns().zip(columns) {
             match (source, values) {
-                (ColumnSource::Fixed(RowColumn { access: Access::Count(_, set), .. }), Values::Counts(values)) => {
+                (
+                    ColumnSource::Fixed(RowColumn { access: Access::Count(_, set), .. }),
+                    ColumnValues::Counts(values),
+                ) => {
                     present(&mut rows, values).for_each(|(row, value)| set(row, value as u64));
                 }
-                (ColumnSource::Fixed(RowColumn { access: Access::Number(_, set), .. }), Values::Numbers(values)) => {
+                (
+                    ColumnSource::Fixed(RowColumn { access: Access::Number(_, set), .. }),
+                    ColumnValues::Numbers(values),
+                ) => {
                     present(&mut rows, values).for_each(|(row, value)| set(row, value));
                 }
-                (ColumnSource::Fixed(RowColumn { access: Access::Text(_, set), .. }), Values::Texts(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Text(_, set), .. }), ColumnValues::Texts(values)) => {
                     present(&mut rows, values).try_for_each(|(row, value)| set(row, &value))?;
                 }
-                (ColumnSource::Fixed(RowColumn { access: Access::Method, .. }), Values::Texts(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Method, .. }), ColumnValues::Texts(values)) => {
                     for (row, label) in rows.iter_mut().zip(values) {
                         let index = self.methods.iter().position(|method| Some(method) == label.as_ref());
                         row.method = index.ok_or_else(|| format!("the study has no method {label:?}"))?;
                     }
                 }
-                (ColumnSource::Draw(index), Values::Numbers(values)) => {
+                (ColumnSource::Draw(index), ColumnValues::Numbers(values)) => {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
                 // Axes and records follow from cell and replicate; other values belong to another design.
@@ -183,9 +191,13 @@ impl RowLayout {
 }
 
 /// Column of record names, one per row; `None` for a trial outside the design.
-fn record_names(get: fn(&JudgedRecord) -> Option<&str>, records: &[Vec<JudgedRecord>], rows: &[StudyRow]) -> Values {
+fn record_names(
+    get: fn(&TrialRecords) -> Option<&str>,
+    records: &[Vec<TrialRecords>],
+    rows: &[StudyRow],
+) -> ColumnValues {
     let name = |row: &StudyRow| get(records.get(row.cell as usize)?.get(row.replicate as usize)?).map(str::to_owned);
-    Values::Texts(rows.iter().map(name).collect())
+    ColumnValues::Texts(rows.iter().map(name).collect())
 }
 
 /// Rows that have a value, each with its value.
@@ -193,7 +205,7 @@ fn present<T>(rows: &mut [StudyRow], values: Vec<Option<T>>) -> impl Iterator<It
     rows.iter_mut().zip(values).filter_map(|(row, value)| Some((row, value?)))
 }
 
-impl Values {
+impl ColumnValues {
     /// Appends an injective encoding of the values to `bytes`.
     pub(super) fn write_to(&self, bytes: &mut Vec<u8>) {
         fn all<T>(values: &[Option<T>], bytes: &mut Vec<u8>, mut write: impl FnMut(&T, &mut Vec<u8>)) {

@@ -12,6 +12,6 @@ mod row;
 mod tests;
 
 pub use columns::{BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
-pub use file::{BlockLabel, Damage, decode, encode};
+pub use file::{BlockFileError, BlockLabel, decode, encode};
 pub use layout::RowLayout;
-pub use row::{EffectSize, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};
+pub use row::{EffectParameterValue, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};

@@ -16,12 +16,12 @@ pub struct NamedEffect {
     /// other.
     pub time_s: Option<f64>,
     /// Parameters of the effect, which only a study of measured records stores.
-    pub sizes: Vec<EffectSize>,
+    pub parameters: Vec<EffectParameterValue>,
 }
 
 /// Parameter of an effect, nondimensional if length and speed of the ship are known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct EffectSize {
+pub struct EffectParameterValue {
     /// Symbol, with a prime if nondimensional.
     pub symbol: Box<str>,
     /// Value; in SI units and radians if it is dimensional.
@@ -30,8 +30,8 @@ pub struct EffectSize {
     pub sd: Option<f64>,
 }
 
-impl EffectSize {
-    /// Size of a parameter of a trace.
+impl EffectParameterValue {
+    /// Value of a parameter of a trace.
     pub fn from_parameter(parameter: &ParameterEntry) -> Self {
         let prime = parameter.prime.as_ref().map(|prime| (format!("{}′", parameter.symbol), prime.quantity));
         let (symbol, quantity) = prime.unwrap_or((parameter.symbol.clone(), parameter.quantity));
@@ -48,7 +48,7 @@ impl NamedEffect {
             id: effect.id.as_str().into(),
             aliases: aliases.map(|id| id.as_str().into()).collect(),
             time_s: time.map(|parameter| parameter.quantity.value),
-            sizes: effect.parameters.values().map(EffectSize::from_parameter).collect(),
+            parameters: effect.parameters.values().map(EffectParameterValue::from_parameter).collect(),
         }
     }
 
@@ -95,21 +95,22 @@ pub struct TraceRow {
     pub named: Vec<NamedEffect>,
     /// Located moments outside the list of effects, clearest first.
     pub located: Vec<LocatedMoment>,
-    /// Identifiers of effects and their probabilities, if at least 0.005.
+    /// Identifiers of effects with a probability of at least 0.005, and this probability.
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Log evidence of the missing effect less that of the best other effect; `None` unless exactly one effect is
     /// missing.
     pub margin: Option<f64>,
-    /// Expected 2 ln Λ of the truth against the nearest first-order response; `None` unless the heading noise is white.
-    pub expected: Option<f64>,
+    /// Expected 2 ln Λ, with the likelihood ratio Λ of the truth to the nearest first-order response; `None` unless the
+    /// heading noise is white.
+    pub expected_2_ln_lambda: Option<f64>,
     /// Share of the headings of the trial inside the 95 % band of the traced model; `None` without a band.
-    pub band_fitted: Option<f64>,
+    pub fitted_band_coverage: Option<f64>,
     /// Share of the headings of the validation manoeuvre inside the 95 % band of the traced model; `None` without a
     /// band.
-    pub band_held_out: Option<f64>,
+    pub validation_band_coverage: Option<f64>,
 }
 
-/// Result of one method on one trial. Units are in the names; `None` is "undefined".
+/// Result of one method on one trial. Units are in the names; `None` is an undefined value.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StudyRow {
     /// Index of the cell in the design.
@@ -120,8 +121,8 @@ pub struct StudyRow {
     pub method: usize,
     /// Reason of a failure; `None` if the method did not fail.
     pub failure: Option<Box<str>>,
-    /// K of the first-order response nearest to the undisturbed trial, 1/s; the K of a first-order ship.
-    /// True value for methods that fit such a response.
+    /// K of the first-order response nearest to the ship in the undisturbed trial, or of a first-order ship, 1/s: the
+    /// true value for methods that fit such a response.
     pub true_k_per_s: Option<f64>,
     /// T of the nearest first-order response, s.
     pub true_t_s: Option<f64>,
@@ -149,7 +150,7 @@ pub struct StudyRow {
     pub validation_rmse_deg: Option<f64>,
     /// Root mean square error on the validation manoeuvre with restarts every 60 s, deg; in a study of measured
     /// records.
-    pub validation_windows_deg: Option<f64>,
+    pub validation_60_s_rmse_deg: Option<f64>,
     /// Number of model evaluations.
     pub evaluations: Option<f64>,
     /// Reason why the method stopped.
@@ -172,8 +173,8 @@ impl StudyRow {
         }
     }
 
-    /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the initial yaw acceleration per rudder angle; `None`
-    /// without an estimate or a truth, and for an infinite error.
+    /// Relative errors of K, (K̂ − K)/K, of T, and of K/T, the initial yaw acceleration per rudder angle, as fractions;
+    /// `None` without an estimate or a truth, and for an infinite error.
     pub fn errors(&self) -> [Option<f64>; 3] {
         let ([k, t], [true_k, true_t]) = ([self.k_per_s, self.t_s], self.true_indices());
         let over = |k: Option<f64>, t: Option<f64>| Some(k? / t?);

@@ -73,8 +73,8 @@ fn written(rows: &[StudyRow], layout: &RowLayout) -> Vec<u8> {
 /// Parameters of effects are read as written, and belong to the named effects.
 #[test]
 fn sizes_of_effects_belong_to_the_effects_named() {
-    let size = |symbol: &str, value, sd| EffectSize { symbol: symbol.into(), value, sd };
-    let effect = |id: &str, sizes| NamedEffect { id: id.into(), sizes, ..NamedEffect::default() };
+    let size = |symbol: &str, value, sd| EffectParameterValue { symbol: symbol.into(), value, sd };
+    let effect = |id: &str, parameters| NamedEffect { id: id.into(), parameters, ..NamedEffect::default() };
     let named = vec![
         effect("speed_loss", vec![size("m_a", 0.1 + 0.2, Some(1e-17)), size("e_n′", -0.0, None)]),
         effect("wind_moment", Vec::new()),
@@ -85,7 +85,7 @@ fn sizes_of_effects_belong_to_the_effects_named() {
     for named in [named, Vec::new()] {
         let whole = row(named.clone());
         let text = get(&whole).expect("a trace has sizes").into_owned();
-        let without = named.iter().map(|effect| NamedEffect { sizes: Vec::new(), ..effect.clone() }).collect();
+        let without = named.iter().map(|effect| NamedEffect { parameters: Vec::new(), ..effect.clone() }).collect();
         let mut read = row(without);
         assert_eq!(set(&mut read, &text), Ok(()));
         assert_eq!(read, whole);
@@ -107,7 +107,7 @@ fn traces_and_predictions_have_columns_of_their_own() {
         id: id.into(),
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
         time_s,
-        sizes: Vec::new(),
+        parameters: Vec::new(),
     };
     let (depends_on, form, alternatives) =
         (Dependence::YawRate, "moment with r|r|".into(), vec!["a".into(), "b".into()]);
@@ -119,9 +119,9 @@ fn traces_and_predictions_have_columns_of_their_own() {
             located: vec![moment.clone(); 2],
             probabilities: vec![("speed_loss".into(), 0.25), ("wind_moment".into(), 1.0)],
             margin: Some(31.5),
-            expected: None,
-            band_fitted: Some(0.95),
-            band_held_out: None,
+            expected_2_ln_lambda: None,
+            fitted_band_coverage: Some(0.95),
+            validation_band_coverage: None,
         };
         StudyRow { method: 1, traced: Some(Box::new(answer)), ..good(256) }
     };
@@ -149,7 +149,7 @@ fn a_block_is_read_as_it_was_written() {
     let not_whole = [&whole[1..], &whole[..5], &[&whole[2..], &whole[..2]].concat(), &trials(257)[..]];
     for rows in not_whole {
         let damage = decode(written(rows, &layout), &label(), &layout).expect_err("not whole trials in their order");
-        assert!(matches!(damage, Damage::Changed(_)), "{damage:?}");
+        assert!(matches!(damage, BlockFileError::Changed(_)), "{damage:?}");
     }
 }
 
@@ -165,13 +165,13 @@ fn blocks_of_something_else_are_told_from_damaged_ones() {
         BlockLabel { block: 0, ..label() },
     ];
     for label_of_other in labels {
-        assert_eq!(decode(bytes.clone(), &label_of_other, &layout), Err(Damage::Foreign(label())));
+        assert_eq!(decode(bytes.clone(), &label_of_other, &layout), Err(BlockFileError::OtherBlock(label())));
     }
     let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
     let other_method = Design { methods: design().methods.split_off(1), ..design() };
     for other in [other_axis, other_method] {
         let damage = decode(bytes.clone(), &label(), &RowLayout::from_design(&other)).expect_err("other columns");
-        assert!(matches!(damage, Damage::Changed(_)), "{damage:?}");
+        assert!(matches!(damage, BlockFileError::Changed(_)), "{damage:?}");
     }
 }
 
@@ -189,8 +189,8 @@ fn a_damaged_block_never_gives_other_rows() {
         assert!(decode(cut, &label(), &layout).is_err(), "cut at {place}");
         match decode(damaged, &label(), &layout) {
             Ok(read) => assert!(read == rows, "byte {place}"),
-            Err(Damage::Foreign(other)) => panic!("byte {place}: {other:?}"),
-            Err(Damage::Changed(_)) => detected += 1,
+            Err(BlockFileError::OtherBlock(other)) => panic!("byte {place}: {other:?}"),
+            Err(BlockFileError::Changed(_)) => detected += 1,
         }
     }
     assert!(3 * detected > bytes.len(), "{detected} of {}", bytes.len());

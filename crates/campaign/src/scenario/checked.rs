@@ -257,7 +257,7 @@ impl Scenario {
         name::check_label(label).map_err(|unfit| {
             Failure::input(format!("a method is called {}; {unfit}", name::quoted_beginning(label)))
         })?;
-        if self.labels().any(|other| other == label) {
+        if self.method_labels().any(|other| other == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
         }
         self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {identity_text}", self.design_sha256)));
@@ -267,7 +267,7 @@ impl Scenario {
         Ok(self)
     }
 
-    /// Scenario as TOML with all defaults written out and marked.
+    /// Scenario as TOML with all defaults written out and marked; for measured records, the text as it was read.
     pub fn resolved(&self) -> String {
         let document: Table = self.text.parse().expect("it has been read");
         if document.contains_key(RECORDS) {
@@ -276,7 +276,7 @@ impl Scenario {
         resolved::scenario_toml(&document, &self.cells[0].methods).expect("it has been resolved")
     }
 
-    /// Assumptions that can influence the result, most harmful first, each as a sentence without full stop.
+    /// Assumptions that can influence the result, most harmful first, each with a sentence without full stop.
     pub fn influential_defaults(&self) -> Vec<(Assumption, String)> {
         let described = |assumption: Assumption| {
             let cells = self.cells.iter().filter(|cell| cell.assumes(assumption)).count();
@@ -300,7 +300,7 @@ impl Scenario {
     }
 
     /// Labels of the methods, in the order of the scenario.
-    pub fn labels(&self) -> impl Iterator<Item = &str> {
+    pub fn method_labels(&self) -> impl Iterator<Item = &str> {
         self.cells[0].methods.iter().map(|method| method.label.as_str())
     }
 }

@@ -34,7 +34,7 @@ struct EffectForm {
 /// Forms in the order of the list of effects, keys in the order of parameters.
 static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     let form = |effect: Arc<dyn Effect>| {
-        let keys = effect.in_file()?.into_iter().map(NumberKey::from).collect();
+        let keys = effect.scenario_numbers()?.into_iter().map(NumberKey::from).collect();
         Some(EffectForm { effect, keys })
     };
     ship::effects::all().into_iter().filter_map(form).collect()
@@ -58,7 +58,7 @@ fn forms_of(id: &str) -> Vec<&'static EffectForm> {
     FORMS.iter().filter(|form| form.effect.id() == id).collect()
 }
 
-/// Adds the defaults to effects.
+/// Adds the default numbers that entries omit.
 pub fn fill_defaults(entries: &mut [EffectWire]) {
     for (id, numbers) in entries.iter_mut().flat_map(|entry| &mut entry.0) {
         let keys = forms_of(id).into_iter().flat_map(|form| &form.keys);
@@ -167,7 +167,7 @@ fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Res
 /// Ship with effects added to its response.
 ///
 /// Fails for a hull, whose equations contain such effects, for a second-order effect on a second-order ship, for a
-/// parameter outside its range, and for a formula of channels that the trials are `lacking`.
+/// parameter outside its range, and for a formula of a channel in `lacking`, the channels absent from the trials.
 pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
@@ -240,14 +240,14 @@ struct EffectParameter {
 
 /// Parameters of an effect on a ship with 1/T `inverse_time`, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
-    let keys = form.effect.in_file().unwrap_or_default();
+    let keys = form.effect.scenario_numbers().unwrap_or_default();
     let setting = |number: &ScenarioNumber| {
         let written = numbers.get(number.key).copied().or(number.default).unwrap_or(f64::NAN);
-        let unit = number.unit * if number.role == NumberConversion::OverT { inverse_time } else { 1.0 };
+        let unit = number.unit * if number.conversion == NumberConversion::OverT { inverse_time } else { 1.0 };
         EffectParameter { value: written * unit, key: number.key, written, unit }
     };
     let settings: Vec<EffectParameter> = keys.iter().map(setting).collect();
-    if let ([_, ScenarioNumber { role: NumberConversion::Direction, .. }], [strength, from]) =
+    if let ([_, ScenarioNumber { conversion: NumberConversion::Direction, .. }], [strength, from]) =
         (&keys[..], &settings[..])
     {
         // The parameters are the components of strength · sin 2(ψ_w − ψ) along cos 2ψ and sin 2ψ.

@@ -39,7 +39,7 @@ pub fn study_sha256(design: &Table, folder: &Path) -> Result<String, Failure> {
                         match file::open(&path, RECORD_FILE) {
                             Ok(mut file) => drop(io::copy(&mut file, &mut digest).on("read", &path)?),
                             // Refused by another check, or overridden in every cell.
-                            Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
+                            Err(FileError::NotFound | FileError::Folder | FileError::NotAFile) => {}
                             Err(error) => return Err(error).on("read", &path),
                         }
                     }

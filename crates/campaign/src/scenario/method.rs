@@ -57,7 +57,7 @@ impl Procedure {
     pub fn summary(&self) -> &str {
         match self {
             Self::Identify { identifier, .. } => identifier.summary(),
-            Self::Trace(settings) if settings.uses_heading_alone => {
+            Self::Trace(settings) if settings.uses_minimal_channels => {
                 "a trace of heading, yaw rate and rudder alone, the signals that all other methods read"
             }
             Self::Trace(_) => {
@@ -141,7 +141,8 @@ pub(crate) struct TraceWire {
 
 impl Default for TraceWire {
     fn default() -> Self {
-        let ::trace::Settings { rule, probability, monomials, .. } = ::trace::Settings::default();
+        let ::trace::Settings { rule, min_probability: probability, monomial_count: monomials, .. } =
+            ::trace::Settings::default();
         Self { rule, probability, menu: None, monomials, heading_alone: false, formulas: Vec::new() }
     }
 }
@@ -216,14 +217,21 @@ fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
 
 /// Settings of a trace, without restarted replays and proposals, which a study does not use.
 fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { rule, probability, ref menu, monomials, heading_alone: uses_heading_alone, .. } = *wire;
+    let TraceWire { rule, probability, ref menu, monomials, heading_alone, .. } = *wire;
     let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), selection_from)?;
     let selection = Selection { formulas, ..selection };
     if monomials > empirical::all().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
     let usual = ::trace::Settings { is_thorough: false, ..::trace::Settings::default() };
-    let settings = ::trace::Settings { probability, rule, monomials, selection, uses_heading_alone, ..usual };
+    let settings = ::trace::Settings {
+        min_probability: probability,
+        rule,
+        monomial_count: monomials,
+        selection,
+        uses_minimal_channels: heading_alone,
+        ..usual
+    };
     settings.check()?;
     Ok(settings)
 }
@@ -258,7 +266,7 @@ mod tests {
         assert_eq!(usual, ::trace::Settings { is_thorough: false, ..::trace::Settings::default() });
         let keys = "rule = \"bic\", menu = [\"wind_moment\"], monomials = 59, probability = 0.9";
         let other = traced(keys).expect("settings in range");
-        assert_eq!((other.rule, other.monomials, other.probability), (WeightingRule::Bic, 59, 0.9));
+        assert_eq!((other.rule, other.monomial_count, other.min_probability), (WeightingRule::Bic, 59, 0.9));
         let allowed = ["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.selection.allows(id));
         assert_eq!(allowed, [true, false, false]);
     }

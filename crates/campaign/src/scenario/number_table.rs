@@ -1,5 +1,5 @@
-//! Tables of numbers, as of an effect or of a user's ship. Their keys are data, with which they are checked,
-//! completed and described in the schema.
+//! Tables of numbers, such as those of an effect or of a user's ship. A list of keys serves to check and complete a
+//! table, and to describe it in the schema.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 use crate::scenario::reader;
 
-/// Names, each with a table of numbers.
+/// Tables of numbers by name.
 pub type NamedNumbers = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// Key of a number in such a table.
+/// Key of a number in a table of numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberKey {
     /// Key, which ends in the unit.
@@ -71,7 +71,7 @@ pub fn fill_defaults(numbers: &mut BTreeMap<String, f64>, keys: &[NumberKey]) {
     }
 }
 
-/// JSON schema of such a table.
+/// JSON schema of a table of numbers with these keys.
 pub fn schema(keys: &[NumberKey]) -> Value {
     let number = |entry: &NumberKey| {
         let mut number = json!({ "type": "number", "format": "double", "description": entry.meaning });

@@ -56,7 +56,7 @@ pub enum FaultMark {
     Name,
     /// Value of the key.
     Value,
-    /// Text value, after so many characters.
+    /// Character of a text value, by its index from 0.
     Within(usize),
 }
 
@@ -86,7 +86,7 @@ impl KeyFault {
         Self { key, mark: FaultMark::Value, problem: problem.into(), expected: expected.into(), advice: advice.into() }
     }
 
-    /// Fault within a text value, after `at` characters.
+    /// Fault that underlines one character of a text value, by its index `at` from 0.
     pub fn within_text(
         at: usize,
         key: KeyPath,
@@ -121,7 +121,7 @@ impl From<SpecificationError> for KeyFault {
         let key = match error.key {
             "vessel.dead_time" => "effect",
             // No scenario sets these; they matter for some manoeuvres only.
-            "longest_wait" | "weather_grid" | "solver.step" => "manoeuvre",
+            "longest_wait" | "weather_cell_width" | "solver.step" => "manoeuvre",
             key => key,
         };
         Self { key: KeyPath::from_dotted(key), mark, problem, expected, advice }

@@ -12,14 +12,14 @@ use toml::{Table, Value};
 use crate::scenario::name::quoted_beginning;
 use crate::scenario::problem::{KeyFault, KeyPath, backquoted_list, suggestion};
 
-/// Value of a whole document.
+/// Value of type `T` from a whole document.
 ///
 /// Fails with the key, the problem and the expected value.
 pub fn read_document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
     read_table(document, &KeyPath::default())
 }
 
-/// Value of the table at `key`.
+/// Value of type `T` from the table at `key`. Fails as [`read_document`] does.
 pub fn read_table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
     serde_path_to_error::deserialize(entries(table)).map_err(|error| {
         let mut place = key.clone();
@@ -47,7 +47,7 @@ fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Nod
     MapDeserializer::new(table.iter().map(|(name, value)| (name.as_str(), Node(value))))
 }
 
-/// Value of a document. Unlike the deserialiser of `toml`, it does not accept a list as a table.
+/// Deserialiser of a value. Unlike that of `toml`, it does not accept a list as a table.
 struct Node<'de>(&'de Value);
 
 impl<'de> IntoDeserializer<'de, ReadFault> for Node<'de> {
@@ -240,7 +240,7 @@ const A_TABLE: &str = "a table: `[name]`, or `{ key = value }`";
 const A_LIST: &str = "a list: `[…]`, or tables under `[[name]]`";
 const SETTINGS: &str = "a name with its settings";
 
-/// What serde expected, by its name in TOML.
+/// Name in TOML of the type that serde expected.
 fn in_toml(expected: &str) -> &str {
     match expected {
         "f64" => "a number",

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use ::ship::ships::ShipModel;
 use ::ship::{Particulars, Regressor, Ship, ShortNumber};
-use simulate::motion::{Planar, PlanarShip};
+use simulate::motion::{PlanarModel, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, SimulatedShip, Simulation};
 
 use crate::scenario::problem::{KeyFault, KeyPath};
@@ -14,7 +14,8 @@ use crate::scenario::specification::{HULL, Specification};
 use crate::scenario::wire::{FurtherWire, ScenarioWire};
 use crate::scenario::{effect, ship};
 
-/// Specification of a trial, with the name of the scenario.
+/// Checked specification of a trial of the scenario `name`; paths are relative to `folder`. Fails for the first invalid
+/// value.
 pub fn trial_specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &lacking(wire))?;
     let simulation = Simulation {
@@ -80,7 +81,7 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
         let expected = format!("expected a number from {} to {}", ShortNumber(low), ShortNumber(high));
         return Err(KeyFault::new(key.child(symbol), ShortNumber(value), expected, "change the number"));
     }
-    let planar = Planar::new(coefficients, length, speed).map_err(|error| {
+    let planar = PlanarModel::new(coefficients, length, speed).map_err(|error| {
         KeyFault::name(key, error.to_string(), "not accepted", "change length and speed of the ship")
     })?;
     Ok(simulated.with_dynamics(Arc::new(PlanarShip { response: response.clone(), planar })))

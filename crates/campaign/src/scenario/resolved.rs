@@ -105,7 +105,7 @@ fn is_of_tables(value: &Value) -> bool {
     }
 }
 
-/// Name as TOML has it: bare if its characters allow it, otherwise quoted.
+/// Key in TOML notation: bare if its characters allow it, otherwise quoted.
 fn written(name: &str) -> String {
     let bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     if !name.is_empty() && name.chars().all(bare) {

@@ -105,10 +105,10 @@ fn hull(key: KeyPath, numbers: &BTreeMap<String, f64>) -> Result<Ship, KeyFault>
         }
     }
     user::hull(&particulars).map_err(|error| match error {
-        HullError::Particulars(ParticularsError { key: particular, quantity, value, range, cure, .. }) => {
+        HullError::Particulars(ParticularsError { key: particular, quantity, value, range, advice, .. }) => {
             let place = if numbers.contains_key(particular) { key.child(particular) } else { key };
             let [value, lowest, highest] = [value, range[0], range[1]].map(|number| ShortNumber::rounded(number, 4));
-            KeyFault::name(place, format!("{quantity} is {value}"), format!("expected {lowest} to {highest}"), cure)
+            KeyFault::name(place, format!("{quantity} is {value}"), format!("expected {lowest} to {highest}"), advice)
         }
         HullError::Mmg(error) => {
             KeyFault::name(key, error.to_string(), "expected particulars of a ship that sails", "change the numbers")

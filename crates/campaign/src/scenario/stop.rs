@@ -67,7 +67,7 @@ impl StopFigure {
 }
 
 impl StopRule {
-    /// Checks the rule against the existing methods.
+    /// Checks that the standard error is finite and above 0, and that the method exists.
     pub(crate) fn check(&self, methods: &[Method]) -> Result<(), KeyFault> {
         let key = KeyPath::from_dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {

@@ -174,7 +174,7 @@ impl AxisWire {
         Ok(SweepAxis { name, points })
     }
 
-    /// Points as listed, or spread over a range.
+    /// Points of the axis, as listed or spread over a range.
     fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single = |key: &str, value: Value, value_place: KeyPath| {
             SweepPoint::from_value(key, value, place.child("key"), value_place)
@@ -332,7 +332,7 @@ fn trim(number: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// Axes of a design.
+/// Checked axes of a design. Fails for the first invalid axis.
 pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
     wires.iter().enumerate().map(|(index, axis)| axis.resolve(index)).collect()
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 use simulate::motion::PlanarCoefficients;
-use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear};
+use simulate::{Approach, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear};
 
 use crate::scenario::draw::DrawWire;
 use crate::scenario::effect::{self, EffectWire};
@@ -57,7 +57,7 @@ pub struct ScenarioWire {
     pub helmsman: Helmsman,
     /// Approach of the ship to the first execute.
     #[serde(default)]
-    pub approach: BeforeExecute,
+    pub approach: Approach,
     /// Recorded channels and times of the logger.
     pub recording: Recording,
     /// Errors of the instruments.

@@ -1,4 +1,4 @@
-//! Bootstrap over batches (Efron 1979). The resamples are sampled once and used for all statistics, so that statistics
+//! Bootstrap over batches (Efron 1979). The resamples are drawn once and used for all statistics, so that statistics
 //! of two methods are paired.
 
 use rand::rngs::ChaCha8Rng;
@@ -22,7 +22,7 @@ pub struct Resamples {
 }
 
 impl Resamples {
-    /// Resamples of `batches` batches.
+    /// 1000 resamples of `batches` batches, drawn with replacement from a fixed seed.
     pub fn new(batches: usize) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(BOOTSTRAP_SEED);
         let mut counts = vec![0u8; RESAMPLE_COUNT * batches];
@@ -41,8 +41,8 @@ impl Resamples {
         self.batches
     }
 
-    /// Statistics of the same sums with percentile intervals; `None` for an undefined statistic. There is no interval
-    /// below six values, for more batches than were resampled, and unless most resamples define the statistic.
+    /// Statistics of the sum of all batches, with percentile 95 % intervals; `None` for an undefined statistic. No
+    /// interval below six values, for more batches than were resampled, and unless most resamples define the statistic.
     pub fn bootstrap<const N: usize>(
         &self,
         batches: &[BatchSums],

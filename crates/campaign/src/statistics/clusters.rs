@@ -6,12 +6,12 @@ use rand::{RngExt, SeedableRng};
 use super::bootstrap::{BOOTSTRAP_SEED, RESAMPLE_COUNT};
 use super::statistic::MIN_INTERVAL_VALUES;
 
-/// Values of `compute` on the cases of each resample of clusters.
+/// Values of `compute` on the cases of each of 1000 resamples of the clusters; a cluster is a list of case indices.
 pub fn resample_clusters<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     draws(|rng, cases| draw_clusters(clusters, rng, cases), compute)
 }
 
-/// Values of `compute` on resamples in two stages: sets, and clusters within each sampled set.
+/// Values of `compute` on the cases of each of 1000 two-stage resamples: of the sets, and of the clusters in each set.
 pub fn resample_sets<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
     let draw = |rng: &mut ChaCha8Rng, cases: &mut Vec<usize>| {
         (0..sets.len()).for_each(|_| draw_clusters(&sets[rng.random_range(0..sets.len())], rng, cases));

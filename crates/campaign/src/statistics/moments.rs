@@ -1,6 +1,6 @@
 //! Running central moments of one quantity, up to the fourth, without its values.
 
-/// Running moments (Pébay 2008).
+/// Running central moments of a quantity, up to the fourth (Pébay 2008).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// Number of values.
@@ -48,7 +48,7 @@ impl Moments {
         self.smallest = self.smallest.min(x);
     }
 
-    /// Joins the moments of other values.
+    /// Adds the moments of other values.
     pub fn merge(&mut self, other: &Self) {
         let (a, b) = (self.count, other.count);
         let n = a + b;

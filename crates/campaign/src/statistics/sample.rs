@@ -40,7 +40,7 @@ impl ErrorSample {
         }
     }
 
-    /// Values in order.
+    /// Values in ascending order; a binned value has a relative error of at most 0.1 %.
     pub fn ordered(&self) -> OrderedSample {
         if self.bins.is_empty() {
             return OrderedSample::from_counts(self.exact.iter().map(|&value| (value, 1)).collect());
@@ -113,7 +113,8 @@ impl OrderedSample {
         self.values[self.up_to.partition_point(|&up_to| up_to <= rank)]
     }
 
-    /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7); `None` without values.
+    /// p-quantile (p from 0 to 1) by linear interpolation between order statistics (Hyndman and Fan 1996, type 7);
+    /// `None` without values.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let last = self.len().checked_sub(1)?;
         let place = p * last as f64;
@@ -144,9 +145,10 @@ impl OrderedSample {
         self.absolute_deviations(self.quantile(0.5)?).quantile_statistic(0.5)
     }
 
-    /// Gaussian kernel density at `points` abscissae over the middle 98 %, at most three interquartile ranges beyond
-    /// the quartiles, so that heavy tails do not spread the abscissae too far for the kernel. Bandwidth of Silverman
-    /// (1986, eq. 3.31); empty for fewer than ten values and for equal quartiles.
+    /// Pairs of abscissa and Gaussian kernel density, at `points` abscissae. They span the middle 98 % and two
+    /// bandwidths on either side, at most three interquartile ranges beyond the quartiles, so that heavy tails do not
+    /// spread the abscissae too far for the kernel. Bandwidth of Silverman (1986, eq. 3.31). Empty for fewer than ten
+    /// values, for equal quartiles, and for fewer than two points.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;

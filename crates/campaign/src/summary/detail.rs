@@ -40,8 +40,8 @@ impl ErrorDensity {
 
 /// Joint distribution of the errors of K and T, %.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Cloud {
-    /// First pairs of errors of K and T, %.
+pub struct JointErrors {
+    /// First pairs of errors of K and T, %, at most 400.
     pub points: Vec<(f64, f64)>,
     /// Mean of the winsorised errors, %.
     pub centre: (f64, f64),
@@ -49,7 +49,7 @@ pub struct Cloud {
     pub covariance: [[f64; 2]; 2],
 }
 
-impl Cloud {
+impl JointErrors {
     /// Joint distribution of errors of K and T; `None` below ten pairs.
     pub(super) fn from_pairs(pairs: &[(f64, f64)]) -> Option<Self> {
         if pairs.len() < 10 {
@@ -82,11 +82,13 @@ impl Cloud {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MethodDetail {
     /// Errors of K; `None` without values.
-    pub violin_k: Option<ErrorDensity>,
+    #[serde(rename = "violin_k")]
+    pub k_errors: Option<ErrorDensity>,
     /// Errors of T; `None` without values.
-    pub violin_t: Option<ErrorDensity>,
+    #[serde(rename = "violin_t")]
+    pub t_errors: Option<ErrorDensity>,
     /// Errors of K and T together; `None` below ten pairs.
-    pub cloud: Option<Cloud>,
+    pub cloud: Option<JointErrors>,
 }
 
 /// Error distributions in one cell.

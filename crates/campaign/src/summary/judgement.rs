@@ -34,7 +34,8 @@ pub enum Judgement {
     /// Wrong effect or moment that the trace reports as an alias of the correct one.
     Alias,
     /// A wrong moment was located, or a wrong time-dependent effect named.
-    Elsewhere,
+    #[serde(rename = "Elsewhere")]
+    WrongMoment,
     /// A wrong effect was named, or any effect although none is missing.
     Wrong,
 }
@@ -48,7 +49,7 @@ impl Judgement {
         Self::Disturbed,
         Self::Clean,
         Self::Alias,
-        Self::Elsewhere,
+        Self::WrongMoment,
         Self::Wrong,
     ];
 
@@ -85,7 +86,7 @@ impl Judgement {
         let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
         match named.is_empty() {
             true if is_alternative() => Self::Alias,
-            true => Self::Elsewhere,
+            true => Self::WrongMoment,
             false if named.iter().all(|effect| is_right(&effect.id)) => Self::Right,
             false if named.iter().all(is_alias) => Self::Alias,
             false => Self::Wrong,
@@ -103,7 +104,7 @@ impl Judgement {
             true => answer.named.iter().all(|effect| effect.time_s.is_some_and(|time| is_near(time, physics))),
             false => answer.located.iter().any(|moment| agrees_with(moment, physics)),
         };
-        if is_placed { Self::Located } else { Self::Elsewhere }
+        if is_placed { Self::Located } else { Self::WrongMoment }
     }
 }
 
@@ -116,7 +117,7 @@ impl fmt::Display for Judgement {
             Self::Disturbed => "disturbed",
             Self::Clean => "clean",
             Self::Alias => "alias",
-            Self::Elsewhere => "located elsewhere",
+            Self::WrongMoment => "located elsewhere",
             Self::Wrong => "wrong",
         })
     }
@@ -156,8 +157,8 @@ fn agrees_with(moment: &LocatedMoment, physics: &MissingPhysics) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Judgement::{Alias, Clean, Disturbed, Elsewhere, Located, Right, Unexplained, Wrong};
-    use document::trace::Dependence::{self, Time, Way, YawRate};
+    use Judgement::{Alias, Clean, Disturbed, Located, Right, Unexplained, Wrong, WrongMoment};
+    use document::trace::Dependence::{self, LateralDistance, Time, YawRate};
 
     fn located(depends_on: Dependence, form: &str, from_s: Option<f64>, until_s: Option<f64>) -> LocatedMoment {
         LocatedMoment { depends_on, form: form.into(), from_s, until_s, alternatives: vec!["speed_loss".into()] }
@@ -192,7 +193,7 @@ mod tests {
         assert_eq!(judged(&[right], shape(), &physics), Right);
         assert_eq!(judged(&[right, alias], None, &physics), Alias);
         assert_eq!(judged(&[right, wrong], None, &physics), Wrong);
-        assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, Elsewhere]);
+        assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, WrongMoment]);
         let silent = |verdict| Judgement::from_trace_row(&TraceRow { verdict, ..TraceRow::default() }, &physics);
         let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
         assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
@@ -209,16 +210,16 @@ mod tests {
         // A lasting moment has no centre.
         for (names, moment, judgement) in [
             (&[(squall, "", 119.0), (squall, "", 181.0)][..], None, Located),
-            (&[(squall, "", 119.0), (squall, "", 150.0)], None, Elsewhere),
+            (&[(squall, "", 119.0), (squall, "", 150.0)], None, WrongMoment),
             (&[(wind, "", 100.0)], None, Wrong),
             (&[(wind, "", 100.0)], from(110.0, None), Wrong),
             (&[(wind, squall, 100.0)], None, Alias),
             (&[(wind, squall, 100.0), (wind, "", 100.0)], None, Wrong),
             (&[], from(110.0, None), Located),
-            (&[], from(140.0, None), Elsewhere),
+            (&[], from(140.0, None), WrongMoment),
             (&[], from(60.0, Some(130.0)), Located),
-            (&[], from(60.0, Some(250.0)), Elsewhere),
-            (&[], Some(located(Way, "moment with y", None, None)), Elsewhere),
+            (&[], from(60.0, Some(250.0)), WrongMoment),
+            (&[], Some(located(LateralDistance, "moment with y", None, None)), WrongMoment),
         ] {
             assert_eq!(judged(names, moment.clone(), &physics), judgement, "{names:?}, {moment:?}");
         }
@@ -229,11 +230,11 @@ mod tests {
         let (period, always) = (timed(&[], Some([90.0; 2])), timed(&[], None));
         for (form, physics, judgement) in [
             ("moment with a period of 100 s", &period, Located),
-            ("moment with a period of 45 s", &period, Elsewhere),
+            ("moment with a period of 45 s", &period, WrongMoment),
             ("moment with a period of 180 s and its harmonics", &period, Located),
             ("moment whose period runs from 80 s to 100 s", &period, Located),
-            ("moment whose period runs from 90 s to 30 s", &period, Elsewhere),
-            ("moment that grows with time", &period, Elsewhere),
+            ("moment whose period runs from 90 s to 30 s", &period, WrongMoment),
+            ("moment that grows with time", &period, WrongMoment),
             ("anything", &always, Located),
         ] {
             assert_eq!(judged(&[], Some(located(Time, form, None, None)), physics), judgement, "{form}");

@@ -14,7 +14,7 @@ mod tally;
 mod tracing;
 
 pub use blind_spots::{BlindSpot, blind_spots, effect_size_axis};
-pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
+pub use detail::{CellDetail, ErrorDensity, JointErrors, MethodDetail};
 pub use judgement::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S};
 pub use performance::{Comparison, IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
 pub use predictions::{ConformalScaling, ImoDecisionTally, PredictionSummary};

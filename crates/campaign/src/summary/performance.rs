@@ -13,7 +13,8 @@ use super::tracing::TraceSummary;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct IndexErrors {
     /// Mean estimate, SI units, with its normal interval.
-    pub answer: Option<Statistic>,
+    #[serde(rename = "answer")]
+    pub mean_estimate: Option<Statistic>,
     /// Mean error, %.
     pub mean: Option<Statistic>,
     /// Median error, %.
@@ -27,16 +28,21 @@ pub struct IndexErrors {
     /// 2.5, 25, 75 and 97.5 % quantiles of the error, %.
     pub quantiles: [Option<Statistic>; 4],
     /// Median absolute error, %.
-    pub median_size: Option<Statistic>,
+    #[serde(rename = "median_size")]
+    pub median_absolute_error: Option<Statistic>,
     /// 90 % quantile of the absolute error, %.
-    pub high_size: Option<Statistic>,
+    #[serde(rename = "high_size")]
+    pub absolute_error_p90: Option<Statistic>,
     /// Coverage of the quoted 95 % intervals.
     pub coverage: Option<Statistic>,
     /// Median width of the quoted 95 % intervals, relative to the truth, %.
-    pub width: Option<Statistic>,
+    #[serde(rename = "width")]
+    pub median_interval_width: Option<Statistic>,
     /// Share of estimates with an interval.
-    pub quoting: Option<Statistic>,
-    /// Ratio of the standard deviation to the Cramér–Rao bound, the root mean square over trials.
+    #[serde(rename = "quoting")]
+    pub interval_share: Option<Statistic>,
+    /// Ratio of the standard deviation of the errors to the Cramér–Rao bound, of which the root mean square over trials
+    /// is taken.
     pub sd_over_bound: Option<Statistic>,
 }
 
@@ -45,7 +51,7 @@ pub struct IndexErrors {
 pub struct Performance {
     /// Number of trials run.
     pub trials: u64,
-    /// Reasons for missing estimates, with counts, in order of first occurrence.
+    /// Reasons for missing estimates, with counts, in order of first occurrence; at most 50.
     pub failures: Vec<(String, u64)>,
     /// Share of trials without an estimate.
     pub failure_rate: Option<Statistic>,
@@ -53,14 +59,15 @@ pub struct Performance {
     pub k: IndexErrors,
     /// Errors of T.
     pub t: IndexErrors,
-    /// Errors of K/T.
+    /// Errors of K/T, without intervals and a mean estimate.
     pub k_over_t: IndexErrors,
     /// Median over trials of the heading error of the replay on the trial itself, deg.
     pub heading_rmse_deg: Option<Statistic>,
     /// Median heading error on the validation manoeuvre, deg.
     pub validation_rmse_deg: Option<Statistic>,
     /// 90 % quantile of the heading error on the validation manoeuvre, deg.
-    pub high_validation_rmse_deg: Option<Statistic>,
+    #[serde(rename = "high_validation_rmse_deg")]
+    pub validation_rmse_p90_deg: Option<Statistic>,
     /// Mean number of model evaluations per estimate; `None` without an estimate.
     pub evaluations: Option<f64>,
 }
@@ -80,7 +87,8 @@ pub struct MethodSummary {
     /// Index of the method.
     pub method: usize,
     /// Performance of the method.
-    pub record: Performance,
+    #[serde(rename = "record")]
+    pub performance: Performance,
 }
 
 /// Comparison of one index of one method with the reference, on trials with an estimate of both.
@@ -91,7 +99,8 @@ pub struct Comparison {
     /// Ratio of the rms errors, method over reference.
     pub rms_ratio: Option<Statistic>,
     /// Share of trials in which the error of the method is smaller; ties count half.
-    pub closer: Option<Statistic>,
+    #[serde(rename = "closer")]
+    pub smaller_error_share: Option<Statistic>,
 }
 
 /// Comparison of one method with the reference method in one cell.
@@ -115,7 +124,8 @@ pub struct Summary {
     /// Summaries per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
     /// Comparisons per cell and method other than the reference.
-    pub pairs: Vec<ReferenceComparison>,
+    #[serde(rename = "pairs")]
+    pub comparisons: Vec<ReferenceComparison>,
     /// Index of the reference method.
     pub reference: usize,
     /// Performance per method, over all cells.
@@ -135,6 +145,6 @@ impl Summary {
     pub fn performance(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
-        Some(&self.methods[place].record)
+        Some(&self.methods[place].performance)
     }
 }

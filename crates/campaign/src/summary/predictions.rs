@@ -23,8 +23,8 @@ pub struct PredictionSummary {
     pub trials: u64,
     /// IMO criterion of the characteristic, with the decisions on it; `None` for a characteristic without a limit.
     pub criterion: Option<ImoDecisionTally>,
-    /// Number of trials whose 90 % interval, scaled about the median by each of [`INTERVAL_SCALES`], contains the true
-    /// value, and sum of their interval scores.
+    /// For the 90 % intervals scaled about the median by each of [`INTERVAL_SCALES`]: number of trials whose interval
+    /// contains the true value, and sum of the interval scores of all trials.
     scaled: Vec<(u64, f64)>,
     /// Sums over trials: error of the median, its square, width of the interval, true value.
     sums: [f64; 4],
@@ -62,8 +62,10 @@ impl ConformalScaling {
     /// Scaling of `predictions` by the factor of the `calibration` predictions, with equal weights of all
     /// characteristics.
     ///
-    /// `None` if either is empty, or if no factor covers enough. Source: V. Vovk, A. Gammerman and G. Shafer (2005),
-    /// Algorithmic Learning in a Random World; the ships are exchanged, not the trials, which differ only in noise.
+    /// `None` if either is empty, or if no factor covers enough. The ships are taken as exchangeable, not the trials,
+    /// which differ only in noise.
+    ///
+    /// Source: V. Vovk, A. Gammerman and G. Shafer (2005), Algorithmic Learning in a Random World.
     pub fn from_calibration(predictions: &[&PredictionSummary], calibration: &[&PredictionSummary]) -> Option<Self> {
         let coverage = |lines: &[&PredictionSummary], place: usize| {
             lines.iter().map(|line| line.share_inside(place)).sum::<f64>() / lines.len() as f64
@@ -88,7 +90,8 @@ pub struct ImoDecisionTally {
     /// Maximum allowed value, in the unit of the characteristic.
     pub limit: f64,
     /// Number of trials whose ship meets the criterion.
-    pub kept: u64,
+    #[serde(rename = "kept")]
+    pub meeting_trials: u64,
     /// Number of trials with a correct decision.
     pub right: u64,
     /// Number of trials with a wrong decision.
@@ -97,16 +100,16 @@ pub struct ImoDecisionTally {
 
 impl ImoDecisionTally {
     fn add(&mut self, figure: &PredictedCharacteristic) {
-        let is_kept = figure.truth <= self.limit;
+        let is_met = figure.truth <= self.limit;
         let [low, high] = figure.ci90;
-        self.kept += u64::from(is_kept);
-        self.right += u64::from(if is_kept { high <= self.limit } else { low > self.limit });
-        self.wrong += u64::from(if is_kept { low > self.limit } else { high <= self.limit });
+        self.meeting_trials += u64::from(is_met);
+        self.right += u64::from(if is_met { high <= self.limit } else { low > self.limit });
+        self.wrong += u64::from(if is_met { low > self.limit } else { high <= self.limit });
     }
 }
 
 impl PredictionSummary {
-    /// Coverage of the 90 % intervals.
+    /// Share of the trials whose 90 % interval contains the true value, with its 95 % interval.
     pub fn coverage(&self) -> Option<Statistic> {
         wilson_share(self.scaled[UNSCALED].0, self.trials)
     }
@@ -259,6 +262,6 @@ mod tests {
             );
         }
         let tally = lines[0].criterion.as_ref().expect("it is limited");
-        assert_eq!((tally.limit, tally.kept, tally.right, tally.wrong), (15.0, 2, 2, 1));
+        assert_eq!((tally.limit, tally.meeting_trials, tally.right, tally.wrong), (15.0, 2, 2, 1));
     }
 }

@@ -84,7 +84,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         fitted_deg: grouped(&mut fits.iter().map(|row| (group(row), row.heading_rmse_deg))),
         validation_deg: grouped(&mut method_rows.iter().map(|row| (group(row), row.validation_rmse_deg))),
         ratio: ratio(|row| row.validation_rmse_deg),
-        window_ratio: ratio(|row| row.validation_windows_deg),
+        window_ratio: ratio(|row| row.validation_60_s_rmse_deg),
         named,
     }
 }
@@ -109,15 +109,18 @@ fn middle(groups: &[Vec<f64>]) -> Option<Statistic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::{CellFacts, JudgedRecord};
+    use crate::design::{CellFacts, TrialRecords};
     use crate::rows::{NamedEffect, TraceRow};
     use crate::scenario::MethodName;
 
     /// Seven records, each fitted alone and validated on the six others.
     fn design() -> Design {
         let name = |number: usize| format!("r{number}");
-        let pairs = (0..7).flat_map(|fit| (0..7).filter(move |judge| *judge != fit).map(move |judge| (fit, judge)));
-        let records = pairs.map(|(fit, judge)| JudgedRecord { fitted: name(fit), validation: Some(name(judge)) });
+        let pairs = (0..7).flat_map(|fit| {
+            (0..7).filter(move |validation| *validation != fit).map(move |validation| (fit, validation))
+        });
+        let records =
+            pairs.map(|(fit, validation)| TrialRecords { fitted: name(fit), validation: Some(name(validation)) });
         let method = |label: &str| MethodName { label: label.into(), id: label.into() };
         Design {
             methods: vec![method("output-error"), method("trace")],

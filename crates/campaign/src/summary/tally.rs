@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::detail::{CellDetail, Cloud, ErrorDensity, MAX_PAIRS, MethodDetail};
+use super::detail::{CellDetail, ErrorDensity, JointErrors, MAX_PAIRS, MethodDetail};
 use super::performance::{Comparison, IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
 use super::predictions::{PredictionSummary, add_predictions};
 use super::tracing::TraceTally;
@@ -110,9 +110,9 @@ impl<'a> Tally<'a> {
         let (reference, detailed) = (self.summary.reference, &self.detailed);
         let waiting = std::mem::take(&mut self.waiting).into_par_iter();
         let summarised = waiting.map(|closed| closed.summarised(reference, detailed)).collect::<Vec<Summary>>();
-        for Summary { methods, pairs, details, tracing, predictions, .. } in summarised {
+        for Summary { methods, comparisons, details, tracing, predictions, .. } in summarised {
             self.summary.methods.extend(methods);
-            self.summary.pairs.extend(pairs);
+            self.summary.comparisons.extend(comparisons);
             self.summary.details.extend(details);
             self.summary.tracing.extend(tracing);
             self.summary.predictions.extend(predictions);
@@ -133,7 +133,7 @@ impl<'a> Tally<'a> {
         self.end_cell();
         self.summarise();
         let resamples = self.resamples(most_batches(&self.overall));
-        let overall = self.overall.par_iter().map(|running| running.record(&resamples)).collect();
+        let overall = self.overall.par_iter().map(|running| running.performance(&resamples)).collect();
         Summary { overall, ..self.summary }
     }
 }
@@ -157,9 +157,9 @@ impl ClosedCell {
         });
         let detail = || CellDetail { cell, methods: present.par_iter().map(MethodTally::detail).collect() };
         Summary {
-            pairs: compared.collect(),
+            comparisons: compared.collect(),
             methods: methods
-                .map(|(method, running)| MethodSummary { cell, method, record: running.record(&resamples) })
+                .map(|(method, running)| MethodSummary { cell, method, performance: running.performance(&resamples) })
                 .collect(),
             details: detailed.contains(&cell).then(detail).into_iter().collect(),
             tracing: present.iter().filter_map(|running| running.trace.as_ref()).map(TraceTally::summary).collect(),
@@ -176,7 +176,11 @@ fn most_batches(methods: &[MethodTally]) -> usize {
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
     let [rms_difference, rms_ratio] =
         resamples.bootstrap(pair.batches(), |total| [PairSums::rms_difference(total), PairSums::rms_ratio(total)]);
-    Comparison { rms_difference, rms_ratio, closer: wilson_share(pair.smaller.round() as u64, pair.trial_count()) }
+    Comparison {
+        rms_difference,
+        rms_ratio,
+        smaller_error_share: wilson_share(pair.smaller.round() as u64, pair.trial_count()),
+    }
 }
 
 /// Running sums of one method.
@@ -253,7 +257,7 @@ impl MethodTally {
         }
     }
 
-    fn record(&self, resamples: &Resamples) -> Performance {
+    fn performance(&self, resamples: &Resamples) -> Performance {
         let failed: u64 = self.failures.iter().map(|(_, count)| count).sum();
         let (heading, validation) = (self.heading.ordered(), self.validation.ordered());
         let answered = self.trials - failed;
@@ -267,14 +271,14 @@ impl MethodTally {
             k_over_t,
             heading_rmse_deg: heading.quantile_statistic(0.5),
             validation_rmse_deg: validation.quantile_statistic(0.5),
-            high_validation_rmse_deg: validation.quantile_statistic(0.9),
+            validation_rmse_p90_deg: validation.quantile_statistic(0.9),
             evaluations: (answered > 0).then(|| self.evaluations / answered as f64),
         }
     }
 
     fn detail(&self) -> MethodDetail {
         let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::from_errors(&index.sample.ordered()));
-        MethodDetail { violin_k: k, violin_t: t, cloud: Cloud::from_pairs(&self.cloud) }
+        MethodDetail { k_errors: k, t_errors: t, cloud: JointErrors::from_pairs(&self.cloud) }
     }
 }
 
@@ -326,7 +330,7 @@ impl IndexSums {
     }
 
     /// Mean estimate; with an interval for two estimates or more.
-    fn answer(&self) -> Option<Statistic> {
+    fn mean_estimate(&self) -> Option<Statistic> {
         let (first, [sum, square]) = self.answers?;
         let count = self.answered as f64;
         let value = first + sum / count;
@@ -336,25 +340,25 @@ impl IndexSums {
 
     fn errors(&self, resamples: &Resamples) -> IndexErrors {
         let ordered = self.sample.ordered();
-        let sizes = ordered.absolute_deviations(0.0);
+        let absolute_errors = ordered.absolute_deviations(0.0);
         let sums = &self.sums;
         let [mean, sd, rms] =
             resamples.bootstrap(sums.batches(), |total| [sums.mean(total), sums.sd(total), sums.rms(total)]);
         let (squares, count) = self.bounds;
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
         IndexErrors {
-            answer: self.answer(),
+            mean_estimate: self.mean_estimate(),
             mean,
             median: ordered.quantile_statistic(0.5),
             sd,
             rms,
             mad: ordered.mad(),
             quantiles: [0.025, 0.25, 0.75, 0.975].map(|p| ordered.quantile_statistic(p)),
-            median_size: sizes.quantile_statistic(0.5),
-            high_size: sizes.quantile_statistic(0.9),
+            median_absolute_error: absolute_errors.quantile_statistic(0.5),
+            absolute_error_p90: absolute_errors.quantile_statistic(0.9),
             coverage: wilson_share(self.held, self.quoted),
-            width: self.widths.ordered().quantile_statistic(0.5),
-            quoting: if self.quoted > 0 { wilson_share(self.quoted, self.answered) } else { None },
+            median_interval_width: self.widths.ordered().quantile_statistic(0.5),
+            interval_share: if self.quoted > 0 { wilson_share(self.quoted, self.answered) } else { None },
             sd_over_bound: sd.zip(bound).map(|(sd, bound)| sd.times(1.0 / bound)),
         }
     }

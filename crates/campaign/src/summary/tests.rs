@@ -54,27 +54,27 @@ fn ladder() -> Vec<StudyRow> {
 #[test]
 fn figures_are_those_of_the_errors() {
     let summary = summarise(&ladder(), &design(&["output-error"], 1));
-    let record = summary.performance(0, 0).expect("one cell");
+    let performance = summary.performance(0, 0).expect("one cell");
     let sd = (28.0_f64 / 6.0).sqrt();
-    near(record.k.mean, 0.0);
-    near(record.k.median, 0.0);
-    near(record.k.sd, sd);
-    near(record.k.rms, 2.0);
-    near(record.k.mad, 2.0);
-    near(record.k.quantiles[1], -1.5);
-    near(record.k.median_size, 2.0);
+    near(performance.k.mean, 0.0);
+    near(performance.k.median, 0.0);
+    near(performance.k.sd, sd);
+    near(performance.k.rms, 2.0);
+    near(performance.k.mad, 2.0);
+    near(performance.k.quantiles[1], -1.5);
+    near(performance.k.median_absolute_error, 2.0);
     // Five of seven intervals of ± 2 % contain the truth; two of these have an end at it, where rounding decides.
-    let coverage = record.k.coverage.expect("quoted").value * 7.0;
+    let coverage = performance.k.coverage.expect("quoted").value * 7.0;
     assert!((3.0..=5.0).contains(&coverage.round()), "{coverage}");
-    near(record.t.coverage, 1.0);
-    near(record.k.sd_over_bound, sd);
-    near(record.t.sd_over_bound, 0.1 * sd);
-    near(record.k.quoting, 1.0);
-    near(record.k.width, 4.0);
-    near(record.heading_rmse_deg, 0.5);
-    assert_eq!((record.trials, record.failed(), record.evaluations), (7, 0, Some(7.0)));
-    assert_eq!(record.validation_rmse_deg, None);
-    assert_eq!(summary.overall[0], *record, "one cell is all cells");
+    near(performance.t.coverage, 1.0);
+    near(performance.k.sd_over_bound, sd);
+    near(performance.t.sd_over_bound, 0.1 * sd);
+    near(performance.k.interval_share, 1.0);
+    near(performance.k.median_interval_width, 4.0);
+    near(performance.heading_rmse_deg, 0.5);
+    assert_eq!((performance.trials, performance.failed(), performance.evaluations), (7, 0, Some(7.0)));
+    assert_eq!(performance.validation_rmse_deg, None);
+    assert_eq!(summary.overall[0], *performance, "one cell is all cells");
 }
 
 #[test]
@@ -86,10 +86,13 @@ fn failures_count_and_do_not_spoil() {
         ..StudyRow::default()
     }));
     let summary = summarise(&rows, &design(&["output-error"], 1));
-    let record = summary.performance(0, 0).expect("one cell");
-    assert_eq!((record.failed(), record.failures.as_slice()), (3, [("not-excited".to_owned(), 3)].as_slice()));
-    near(record.failure_rate, 0.3);
-    near(record.k.rms, 2.0);
+    let performance = summary.performance(0, 0).expect("one cell");
+    assert_eq!(
+        (performance.failed(), performance.failures.as_slice()),
+        (3, [("not-excited".to_owned(), 3)].as_slice())
+    );
+    near(performance.failure_rate, 0.3);
+    near(performance.k.rms, 2.0);
 }
 
 #[test]
@@ -106,13 +109,13 @@ fn methods_are_compared_on_the_same_trials() {
     }
     let summary = summarise(&rows, &design(&["srivc", "output-error"], 1));
     assert_eq!(summary.reference, 1);
-    let [pair] = summary.pairs.as_slice() else { panic!("one method beside the reference") };
+    let [pair] = summary.comparisons.as_slice() else { panic!("one method beside the reference") };
     assert_eq!((pair.method, pair.trials), (0, 30));
     near(pair.k.rms_difference, 2.0);
     near(pair.k.rms_ratio, 3.0);
-    near(pair.k.closer, 0.0);
+    near(pair.k.smaller_error_share, 0.0);
     near(pair.t.rms_ratio, 0.5);
-    near(pair.t.closer, 1.0);
+    near(pair.t.smaller_error_share, 1.0);
 }
 
 #[test]
@@ -135,7 +138,7 @@ fn cells_are_told_apart_and_pooled() {
 #[test]
 fn one_trial_has_no_interval() {
     let summary = summarise(&ladder()[..1], &design(&["output-error"], 1));
-    let record = summary.performance(0, 0).expect("rows");
-    assert_eq!((record.k.sd, record.k.rms.expect("one").ci95), (None, None));
+    let performance = summary.performance(0, 0).expect("rows");
+    assert_eq!((performance.k.sd, performance.k.rms.expect("one").ci95), (None, None));
     assert_eq!(summarise(&[], &design(&["output-error"], 1)).methods, []);
 }

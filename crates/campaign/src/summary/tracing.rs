@@ -13,8 +13,8 @@ use crate::rows::{NamedEffect, StudyRow, TraceRow};
 use crate::scenario::{HULL, MissingPhysics};
 use crate::statistics::{Statistic, wilson_share};
 
-/// Minimum margin in log evidence of a missing effect that must be named; below it a rival explains the trial nearly as
-/// well.
+/// Margin in log evidence above which a missing effect should be named; below it another effect explains the trial
+/// nearly as well.
 pub const MIN_CLEAR_MARGIN: f64 = 10.0;
 
 /// Counts over the traces of one method in one cell.
@@ -31,7 +31,7 @@ pub struct TraceSummary {
     pub judgements: BTreeMap<Judgement, u64>,
     /// Number of trials.
     pub trials: u64,
-    /// Number of trials by verdict.
+    /// Number of trials by verdict, in the order of [`Verdict::ALL`].
     pub verdicts: [u64; Verdict::ALL.len()],
     /// Number of trials by named effect.
     pub named: BTreeMap<String, u64>,
@@ -40,7 +40,8 @@ pub struct TraceSummary {
     /// Number of trials without any named effect.
     #[serde(rename = "silent")]
     pub without_names: u64,
-    /// Number of trials whose named groups contain every missing effect.
+    /// Number of trials whose named groups contain every missing effect, or one of the effects that a formula stands
+    /// for.
     #[serde(rename = "complete")]
     pub all_named: u64,
     /// Number of trials with a named group that contains no missing effect; for a hull, whose missing effects are not
@@ -55,14 +56,17 @@ pub struct TraceSummary {
     pub clearly_separable: [u64; 2],
     /// Mean over the trials of the expected 2 ln Λ (twice the log-likelihood ratio) of the truth against the nearest
     /// first-order response; `None` if no trial has one.
-    pub expected: Option<f64>,
+    #[serde(rename = "expected")]
+    pub mean_expected_2_ln_lambda: Option<f64>,
     /// Mean coverage of the heading band, on the trial and on the validation manoeuvre; `None` without a band.
-    pub band: [Option<f64>; 2],
-    /// Calibration of the probabilities of effects, by bins of the probability; all counts are 0 for a hull.
+    #[serde(rename = "band")]
+    pub band_coverage: [Option<f64>; 2],
+    /// Calibration of the probabilities of effects, by the bins between [`CALIBRATION_BIN_EDGES`]; all counts are 0 for
+    /// a hull.
     pub calibration: [CalibrationBin; CALIBRATION_BIN_EDGES.len() - 1],
 }
 
-/// Edges of the probability bins.
+/// Edges of the probability bins of a calibration table; a bin includes its lower edge, the last one both.
 pub const CALIBRATION_BIN_EDGES: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
 /// Bin of a calibration table.
@@ -203,8 +207,9 @@ impl TraceTally {
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
             summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
         }
-        summary.expected = expected.add(answer.expected);
-        summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
+        summary.mean_expected_2_ln_lambda = expected.add(answer.expected_2_ln_lambda);
+        summary.band_coverage =
+            [fitted.add(answer.fitted_band_coverage), held_out.add(answer.validation_band_coverage)];
     }
 
     /// Summary of the counts.
@@ -232,8 +237,8 @@ mod tests {
                 named: groups.iter().map(effect).collect(),
                 probabilities: vec![("wind_moment".into(), 0.97)],
                 margin: Some(30.0),
-                expected: Some(4.0),
-                band_fitted: Some(0.9),
+                expected_2_ln_lambda: Some(4.0),
+                fitted_band_coverage: Some(0.9),
                 ..TraceRow::default()
             });
         }
@@ -248,7 +253,7 @@ mod tests {
         assert_eq!((summary.trials, summary.all_named, summary.falsely_named, summary.without_names), (5, 3, 1, 1));
         assert_eq!((summary.exactly_named, summary.clearly_separable), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"], summary.aliases.get("c")), (3, 1, Some(&1)));
-        assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
+        assert_eq!((summary.mean_expected_2_ln_lambda, summary.band_coverage), (Some(4.0), [Some(0.9), None]));
     }
 
     /// One effect is present with probability 97 %, the others are absent with probability 0.

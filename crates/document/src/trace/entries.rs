@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
-use super::errors::BeforeAfter;
+use super::errors::RecordReplayErrors;
 use crate::quantity::Quantity;
 use crate::trial_particulars::TrialParticularsEntry;
 
@@ -82,7 +82,7 @@ pub enum Dependence {
     Heading,
     /// Distance to one side of the initial course.
     #[serde(rename = "way to one side")]
-    Way,
+    LateralDistance,
     /// Yaw rate.
     #[serde(rename = "yaw rate")]
     YawRate,
@@ -113,7 +113,7 @@ pub struct DisturbanceEntry {
 
 /// Located moment that belongs to no listed effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct LocatedEntry {
+pub struct LocatedMomentEntry {
     /// Variable of the moment: `time`, `heading`, `way to one side`, `yaw rate`, `rudder` or `history of the
     /// rudder`.
     pub depends_on: Dependence,
@@ -168,20 +168,20 @@ impl RecordEntry {
     }
 }
 
-/// Errors on one record, with its use.
+/// Replay errors on one record, with the use of the record.
 #[derive(Clone, Copy)]
 pub struct RecordErrors<'a> {
     /// Name of the record.
     pub name: &'a str,
     /// `fitted`, `held out` or `left out`.
     pub used: &'static str,
-    /// Errors.
-    pub errors: &'a BeforeAfter,
+    /// Replay errors of the base and of the structure average.
+    pub errors: &'a RecordReplayErrors,
 }
 
 /// Step from the base to the most probable structure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct StairEntry {
+pub struct InclusionStepEntry {
     /// Identifier of the added effect; `null` for the base.
     pub id: Option<String>,
     /// Form of the added effect.
@@ -211,12 +211,12 @@ pub struct MissingMomentEntry {
     pub inside_all: Vec<String>,
     /// Curves over the channels, the most likely first.
     #[serde(rename = "over")]
-    pub channel_curves: Vec<PanelEntry>,
+    pub channel_curves: Vec<ChannelCurveEntry>,
 }
 
 /// Curve of a missing moment over one channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PanelEntry {
+pub struct ChannelCurveEntry {
     /// Channel.
     pub channel: String,
     /// Column of the channel in the tables.

@@ -6,28 +6,28 @@ use serde::{Deserialize, Serialize};
 
 /// Replay errors on all records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ErrorEntry {
+pub struct ReplayErrorLists {
     /// Reason to keep the replay of the base, if the structures do not improve it on the fitted records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_base: Option<String>,
     /// Fitted records.
-    pub identification: Vec<BeforeAfter>,
+    pub identification: Vec<RecordReplayErrors>,
     /// Held-out records; no fit depends on them.
-    pub validation: Vec<BeforeAfter>,
+    pub validation: Vec<RecordReplayErrors>,
     /// Records omitted in turn, if several are fitted and none is held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub leave_one_out: Vec<BeforeAfter>,
+    pub leave_one_out: Vec<RecordReplayErrors>,
 }
 
 /// Replay errors on one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct BeforeAfter {
+pub struct RecordReplayErrors {
     /// File of the record.
     pub file: String,
     /// Errors of the base.
-    pub before: ErrorsEntry,
+    pub before: ModelReplayErrors,
     /// Errors of the structure average.
-    pub after: ErrorsEntry,
+    pub after: ModelReplayErrors,
     /// Heading error by prediction horizon, the shortest first and the whole record last; empty for fitted records.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub horizons: Vec<HorizonEntry>,
@@ -46,7 +46,7 @@ pub struct HorizonEntry {
 
 /// Replay errors of one model on one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct ErrorsEntry {
+pub struct ModelReplayErrors {
     /// Root mean square heading error of the full replay.
     pub heading_rmse_deg: f64,
     /// Root mean square yaw-rate error of the full replay, if the yaw rate was measured.

@@ -10,8 +10,8 @@ pub fn sum<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64
     std::array::from_fn(|i| std::array::from_fn(|j| left[i][j] + right[i][j]))
 }
 
-/// Product of two matrices; zeros of the first matrix are skipped; they are frequent, because a disturbance acts on the
-/// ship but not the ship on the disturbance.
+/// Product of two matrices. Zeros of the first matrix are skipped: a transition matrix with states of a disturbance has
+/// many.
 pub fn product<const N: usize>(left: &[[f64; N]; N], right: &[[f64; N]; N]) -> [[f64; N]; N] {
     let mut result = [[0.0; N]; N];
     for (result, left) in result.iter_mut().zip(left) {

@@ -1,6 +1,6 @@
 //! Whitening filter: the gains of a Kalman filter applied to columns of readings.
 //!
-//! The recursion within a column is serial: a row waits for the row before it. Columns are independent, and so are
+//! The recursion within a column is serial: every row needs the row before it. Columns are independent, and so are
 //! filters, so several columns and two filters advance side by side.
 
 use super::{Filter, Gain, MAX_STATES, Reading, StateSensor, Step, System};
@@ -20,7 +20,7 @@ pub struct Whitener {
     /// Index of the gain of every reading.
     gain_of: Vec<u32>,
     /// Sum Σ log S over the readings, with the innovation variances S.
-    pub log_variance: f64,
+    pub log_determinant: f64,
 }
 
 /// Kalman gain, with 1/√S and log S of the innovation.
@@ -40,7 +40,7 @@ impl<const N: usize> Filter<N> {
         let matrix = |f: &[[f64; N]; N]| -> [[f64; MAX_STATES]; MAX_STATES] {
             std::array::from_fn(|k| f.get(k).map_or([0.0; MAX_STATES], wide))
         };
-        let log_variance = self.log_determinant();
+        let log_determinant = self.log_determinant();
         let System { steps, sensors, readings, .. } = self.system;
         let gains = self.gains.iter().zip(self.weights).zip(self.log_variances);
         let gain = |((gain, weight), log_variance): ((&Gain<N>, _), _)| WhiteningGain {
@@ -56,7 +56,7 @@ impl<const N: usize> Filter<N> {
             gains: gains.map(gain).collect(),
             readings,
             gain_of: self.gain_of,
-            log_variance,
+            log_determinant,
         }
     }
 }
@@ -106,7 +106,7 @@ impl Whitener {
         }
     }
 
-    /// Predicted states before every reading of a column, given the earlier readings.
+    /// Predicted state before every reading of a column, given the earlier readings; unused states are zero.
     pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
         let mut x = [[0.0]; MAX_STATES];
         let predict = |((&value, &reading), &gain): ((&f64, &Reading), &u32)| {

@@ -46,7 +46,7 @@ impl Interval {
     }
 }
 
-/// K, K δ_r and their covariance.
+/// K (1/s), K δ_r (rad/s) and their covariance; the covariance is `None` without degrees of freedom.
 #[derive(Debug)]
 struct GainFit {
     gain: f64,
@@ -56,7 +56,8 @@ struct GainFit {
     condition: f64,
 }
 
-/// Traditional method on all points, or on the first three peaks of every trial.
+/// K, K δ_r and T by the traditional method, from all points or from the first three peaks of every trial. `bias` is a
+/// given δ_r, rad; `None` identifies it.
 pub(super) fn identify(
     trials: &[AnalysedTrial],
     bias: Option<f64>,

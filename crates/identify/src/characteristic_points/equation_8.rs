@@ -36,7 +36,7 @@ fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2
 }
 
 /// Solution at instants one window apart, so that no row serves two instants. ψ(0) + T r(0) is an unknown of every
-/// trial, which avoids the one-sided slope at the first row.
+/// trial, which avoids the one-sided slope at the first row. `bias` is a given δ_r, rad; `None` identifies it.
 pub(super) fn identify_at_spaced_instants(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
@@ -60,7 +60,8 @@ pub(super) fn identify_at_spaced_instants(
     equations.solve(&origins, bias, condition_limit)
 }
 
-/// Solution of the equation as printed, at the heading extrema: r(t) = 0, so that T multiplies only r(0).
+/// Solution of the equation as printed, at the heading extrema: r(t) = 0, so that T multiplies only r(0). `bias` is a
+/// given δ_r, rad; `None` identifies it.
 pub(super) fn identify_at_extrema(
     trials: &[AnalysedTrial],
     bias: Option<f64>,
@@ -96,7 +97,7 @@ impl Equations {
         self.heading.push(heading);
     }
 
-    /// Column that is one in the rows of a trial.
+    /// Column with 1 in the equations of a trial and 0 in all others.
     fn origin(&self, trial: usize) -> Vec<f64> {
         let start = if trial == 0 { 0 } else { self.ends[trial - 1] };
         (0..self.heading.len()).map(|row| if (start..self.ends[trial]).contains(&row) { 1.0 } else { 0.0 }).collect()

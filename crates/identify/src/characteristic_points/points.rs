@@ -38,7 +38,7 @@ pub enum BaseCourseOrigin {
 /// Characteristic point of a record; the heading is relative to the base course.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CharacteristicPoint {
-    /// Time, s.
+    /// Time since the first observed row, s.
     pub time: f64,
     /// Heading, rad.
     pub heading: f64,
@@ -61,7 +61,7 @@ pub struct TrialPoints {
     pub base: f64,
     /// Origin of the base course.
     pub base_origin: BaseCourseOrigin,
-    /// Half width of the fits, s.
+    /// Half width of the local fits, s.
     pub half_width: f64,
 }
 
@@ -78,7 +78,7 @@ impl TrialPoints {
         }
     }
 
-    /// Finds the points of a record. `base` (rad) and `half_width` (s) are estimated from the record if they are
+    /// Characteristic points of a record. `base` (rad) and `half_width` (s) are estimated from the record if they are
     /// `None`, the half width as the share `width_share` of half a period, but at least three sampling intervals.
     pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;

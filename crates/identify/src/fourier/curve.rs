@@ -5,11 +5,11 @@
 pub struct FourierSeries {
     /// Fundamental w, rad/s.
     pub fundamental: f64,
-    /// a₀, rad; not the mean of the record unless it holds whole periods.
+    /// Constant term a₀, rad; it is the mean of the record only if the record holds whole periods.
     pub mean: f64,
-    /// aₙ, n = 1..N, rad.
+    /// Cosine coefficients aₙ, n = 1..N, rad.
     pub cosine: Vec<f64>,
-    /// bₙ, n = 1..N, rad.
+    /// Sine coefficients bₙ, n = 1..N, rad.
     pub sine: Vec<f64>,
     /// Share of the variance of the heading explained by the curve.
     pub r_squared: f64,

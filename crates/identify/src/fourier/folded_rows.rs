@@ -1,5 +1,5 @@
 //! Record folded about its middle: every row of a record in even steps has its mirror image, so that sums of even and
-//! odd functions of time run over half the rows. It does not model the signal.
+//! odd functions of time run over half the rows.
 
 /// Number of instants summed in parallel: independent sums in a fixed order, few enough to stay in registers.
 pub const LANES: usize = 4;
@@ -76,7 +76,7 @@ pub fn has_even_steps(time: &[f64]) -> bool {
     time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN_STEP_TOLERANCE * step)
 }
 
-/// Block of a padded column from `start` on.
+/// Block of [`LANES`] values of a padded column, from row `start` on.
 pub fn lanes<T>(values: &[T], start: usize) -> &[T; LANES] {
     values[start..start + LANES].try_into().expect("columns are padded to whole blocks")
 }

@@ -274,8 +274,8 @@ fn residual_sum_of_squares(design: DMatrix<f64>, mut signal: DVector<f64>) -> f6
     signal.rows_range(width..).norm_squared()
 }
 
-/// Explained sum of squares bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` if a pivot is within
-/// rounding.
+/// Explained sum of squares bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` if a pivot is at most
+/// [`MIN_PIVOT`] of its diagonal element, or NaN.
 fn explained(gram: &mut [f64], right: &mut [f64]) -> Option<f64> {
     let width = right.len();
     let mut diagonal = [0.0; MAX_COLUMNS];

@@ -1,5 +1,5 @@
-//! Least squares for K, T and δ_r on T r' + r = K (δ + δ_r), with r and r' of Fourier curves, and their covariance
-//! under white heading noise. It does not fit the curves. Source of the equation: Ge, Hu, Yin and Sun, equation (10).
+//! Least squares for K, T and δ_r on T r' + r = K (δ + δ_r), with r and r' of fitted Fourier curves, and their
+//! covariance under white heading noise. Source of the equation: Ge, Hu, Yin and Sun, equation (10).
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ pub enum RegressionForm {
     YawRate,
 }
 
-/// Equations of one or several trials, δ_r common to all.
+/// Equations of motion of one or several trials; K, T and δ_r are common to all.
 #[derive(Debug, Clone, Default)]
 pub struct Equations {
     yaw_acceleration: Vec<f64>,
@@ -61,8 +61,8 @@ pub struct Solution {
 }
 
 impl Equations {
-    /// Adds equations at `rows` of the instants of `basis`: r and r' of the heading on it, `rudder` (rad) as given for
-    /// all instants.
+    /// Adds the equations of a trial at the given rows: r and r' from `heading`, the projection of the heading on
+    /// `basis`, and δ from `rudder` (rad, a value for every instant of the basis).
     ///
     /// `noise_variance`, rad², is the variance of white noise on the heading.
     pub fn add(

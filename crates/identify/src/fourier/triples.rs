@@ -36,7 +36,7 @@ pub enum Selection {
     WellConditioned,
 }
 
-/// Instant at which the equation of motion may be written.
+/// Rudder, yaw rate and yaw acceleration at an instant: the signals of the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegressionPoint {
     /// Rudder δ, rad.
@@ -62,9 +62,9 @@ pub struct TripleEstimate {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SampledTriples {
     /// Estimate of every kept triple.
-    pub answers: Vec<TripleEstimate>,
+    pub estimates: Vec<TripleEstimate>,
     /// Number of sampled triples.
-    pub tried: usize,
+    pub sampled: usize,
     /// Number of triples left out because their points lie on a line, for example with three equal rudder angles.
     pub singular: usize,
     /// Number of triples left out with a condition number above the limit.
@@ -89,17 +89,17 @@ pub fn sample_triples(
     }
     let scale = [standard_deviation(instants, |i| i.yaw_acceleration), standard_deviation(instants, |i| i.rudder)];
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut drawn = SampledTriples { answers: Vec::with_capacity(count), ..SampledTriples::default() };
-    while drawn.answers.len() < count {
-        if drawn.tried == count * DRAWS_PER_TRIPLE {
-            let (needed, count) = (count, drawn.answers.len());
+    let mut drawn = SampledTriples { estimates: Vec::with_capacity(count), ..SampledTriples::default() };
+    while drawn.estimates.len() < count {
+        if drawn.sampled == count * DRAWS_PER_TRIPLE {
+            let (needed, count) = (count, drawn.estimates.len());
             return Err(IdentifyError::TooFewPoints { kind: "usable triples of instants", needed, count });
         }
         let chosen: [usize; 3] = std::array::from_fn(|_| generator.random_range(0..instants.len()));
         if chosen[0] == chosen[1] || chosen[1] == chosen[2] || chosen[0] == chosen[2] {
             continue;
         }
-        drawn.tried += 1;
+        drawn.sampled += 1;
         let triple = chosen.map(|index| instants[index]);
         let Some(answer) = solve(&triple, scale) else {
             drawn.singular += 1;
@@ -110,7 +110,7 @@ pub fn sample_triples(
             continue;
         }
         drawn.negative += usize::from(answer.K < 0.0 || answer.T < 0.0);
-        drawn.answers.push(answer);
+        drawn.estimates.push(answer);
     }
     Ok(drawn)
 }
@@ -174,7 +174,7 @@ mod tests {
             let case = Case { heading_deg, bias_deg: 0.7, ..Case::default() };
             let drawn = sample_triples(&exact(&case), Selection::Uniform, 4000, 1).expect("most triples are usable");
             assert!(drawn.singular > 0 && drawn.negative == 0);
-            for answer in &drawn.answers {
+            for answer in &drawn.estimates {
                 assert_relative_eq!(answer.K, case.K, max_relative = 1e-6);
                 assert_relative_eq!(answer.T, case.T, max_relative = 1e-6);
                 assert_abs_diff_eq!(answer.rudder_bias, case.ship().rudder_bias, epsilon = 1e-6);
@@ -189,7 +189,7 @@ mod tests {
         for (heading_deg, counted) in [(10.0, 0.162), (20.0, 0.190)] {
             let instants = exact(&Case { heading_deg, ..Case::default() });
             let drawn = sample_triples(&instants, Selection::Uniform, 4000, 1).expect("most triples are usable");
-            let share = drawn.singular as f64 / drawn.tried as f64;
+            let share = drawn.singular as f64 / drawn.sampled as f64;
             assert!((share - counted).abs() < 0.02, "{share} singular in 10/{heading_deg}");
         }
     }
@@ -199,7 +199,7 @@ mod tests {
         let instants = exact(&Case::default());
         let drawn = sample_triples(&instants, Selection::default(), 200, 2).expect("enough good triples");
         assert!(drawn.ill_conditioned > 0);
-        assert_eq!(drawn.tried, 200 + drawn.ill_conditioned + drawn.singular);
+        assert_eq!(drawn.sampled, 200 + drawn.ill_conditioned + drawn.singular);
     }
 
     #[test]

@@ -29,7 +29,7 @@ fn uniform_triples_are_useless() {
     let instants = method.instants(&trial, &samples, &fitted);
     let drawn = triples::sample_triples(&instants, Selection::Uniform, 2000, 0).expect("most are usable");
     let share = |holds: &dyn Fn(&TripleEstimate) -> bool| {
-        drawn.answers.iter().filter(|answer| holds(answer)).count() as f64 / drawn.answers.len() as f64
+        drawn.estimates.iter().filter(|answer| holds(answer)).count() as f64 / drawn.estimates.len() as f64
     };
     let negative = share(&|a| a.K < 0.0 || a.T < 0.0);
     let good = share(&|a| (a.K / case.K - 1.0).abs() < 0.1 && (a.T / case.T - 1.0).abs() < 0.1);

@@ -42,7 +42,7 @@ impl PriorCheck {
     }
 
     /// Check of fitted values against the prior of the ship, without the coefficients of a single trial. `None` if
-    /// the records add no information.
+    /// the records add no information, or if a covariance is not positive definite.
     pub(super) fn from_fit(prior: &HullFormPrior, values: &DVector<f64>, covariance: &DMatrix<f64>) -> Option<Self> {
         let places: Vec<usize> =
             (0..values.len()).filter(|&place| !is_trial_specific(prior.coefficients[place].key)).collect();

@@ -4,7 +4,7 @@ use document::earlier_trials::Likeness;
 use nalgebra::DVector;
 use ship::ships::kvlcc2::MODEL_L7;
 use ship::vessel::mmg::Mmg;
-use ship::vessel::prime::HullForm;
+use ship::vessel::prime::HullModel;
 use ship::vessel::prior::HullParticulars;
 use trial::{Channel, Columns, Trial};
 
@@ -30,7 +30,7 @@ const SHIP: HullParticulars = HullParticulars {
 /// Hull with every coefficient one deviation above the expected value and a standard deviation of a tenth of that
 /// deviation in every direction.
 fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
-    let form = HullForm::candidates(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
+    let form = HullModel::candidates(Some(&particulars)).into_iter().find(|f| f.as_str() == form).expect("known");
     let priors = form.coefficients();
     let values = DVector::from_iterator(priors.len(), priors.iter().map(|prior| prior.mean + prior.sd));
     let covariance = form.covariance() * 0.01;

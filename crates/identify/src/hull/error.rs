@@ -15,32 +15,32 @@ pub(super) const MAX_DURATION_LENGTHS: f64 = 1000.0;
 /// Reason why no hull is fitted.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum HullFitError {
-    /// Length or speed are not declared.
+    /// Length or approach speed of the ship is not declared.
     #[error("length and approach speed of the ship are missing; declare both in the sidecar of the record")]
-    Particulars,
-    /// The record of this name is too short.
+    MissingParticulars,
+    /// Too few headings in the record of this name.
     #[error("{0} has fewer than {MIN_HEADINGS} headings")]
-    Short(String),
-    /// Rows, or the ends of a record, that are farther apart than in any trial of a ship.
+    TooFewHeadings(String),
+    /// Rows too far apart, or a record too long, for a trial of a ship: the clock, length or speed is wrong.
     #[error(
-        "{trial} has a row every {row:.3} L/U over {whole:.0} L/U; expected at most {MAX_INTERVAL_LENGTHS} L/U and \
+        "{trial} has a row every {row_interval:.3} L/U over {whole:.0} L/U; expected at most {MAX_INTERVAL_LENGTHS} L/U and \
          {MAX_DURATION_LENGTHS} L/U; check the clock, length and speed"
     )]
-    Clock {
+    ImplausibleTimes {
         /// Name of the record.
         trial: String,
         /// Median time between rows, L/U₀.
-        row: f64,
+        row_interval: f64,
         /// Duration of the record, L/U₀.
         whole: f64,
     },
     /// A record begins near rest, where the priors of a hull do not apply.
-    #[error("{trial} begins at {share:.2} of the approach speed; begin it in steady approach")]
+    #[error("{trial} begins at {speed_ratio:.2} of the approach speed; begin it in steady approach")]
     StartsNearRest {
         /// Name of the record.
         trial: String,
         /// Surge velocity in the first row, relative to the approach speed.
-        share: f64,
+        speed_ratio: f64,
     },
     /// No coefficients near the prior can be replayed.
     #[error("no hull near its prior can be replayed; check length, speed and rudder sign")]

@@ -14,7 +14,7 @@
 
 use document::earlier_trials::Likeness;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
+use ship::vessel::prime::{HullCoefficient, HullModel, is_frictional, is_trial_specific};
 use ship::vessel::prior::HullParticulars;
 
 /// Relative tolerance of equal Froude numbers.
@@ -27,25 +27,25 @@ const MIN_INFORMATION: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct HullFormPrior {
     /// Hull form.
-    pub form: HullForm,
+    pub form: HullModel,
     /// Particulars of the ship; `None` if they are not declared.
     pub particulars: Option<HullParticulars>,
     /// Coefficients, each with prior mean and standard deviation.
     pub coefficients: Vec<HullCoefficient>,
-    /// Inverse of the covariance of all coefficients.
+    /// Prior precision Λ: the inverse of the prior covariance of all coefficients.
     pub precision: DMatrix<f64>,
     /// `true` if the prior includes earlier trials.
-    pub has_trials: bool,
+    pub has_earlier_trials: bool,
 }
 
 /// Hull estimate from earlier trials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EarlierHull {
     /// Form, with the prior of the particulars.
-    pub form: HullForm,
+    pub form: HullModel,
     /// Particulars of the ship.
     pub particulars: HullParticulars,
-    /// Values of the coefficients.
+    /// Estimates of the coefficients, dimensionless, in the order of the form.
     pub values: DVector<f64>,
     /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
@@ -59,9 +59,9 @@ pub fn differs_in_froude_number(earlier: &HullParticulars, ship: &HullParticular
 
 impl HullFormPrior {
     /// Prior from the form alone.
-    pub fn from_form(form: HullForm) -> Self {
+    pub fn from_form(form: HullModel) -> Self {
         let (coefficients, precision) = (form.coefficients().to_vec(), precision_of(&form));
-        Self { form, particulars: None, coefficients, precision, has_trials: false }
+        Self { form, particulars: None, coefficients, precision, has_earlier_trials: false }
     }
 
     /// Priors of all forms that can be fitted to a ship, updated with earlier trials. Missing particulars are taken
@@ -69,7 +69,7 @@ impl HullFormPrior {
     pub fn candidates(particulars: Option<&HullParticulars>, earlier: &[EarlierHull]) -> Vec<Self> {
         let particulars = particulars
             .map(|declared| earlier.iter().fold(*declared, |ship, trial| ship.with_missing_from(&trial.particulars)));
-        let after_trials = |form: HullForm| {
+        let after_trials = |form: HullModel| {
             let mut prior = Self { particulars, ..Self::from_form(form) };
             let same_form = earlier.iter().filter(|hull| hull.form.as_str() == prior.form.as_str());
             if let Some(ship) = particulars {
@@ -78,10 +78,10 @@ impl HullFormPrior {
             }
             prior
         };
-        HullForm::candidates(particulars.as_ref()).into_iter().map(after_trials).collect()
+        HullModel::candidates(particulars.as_ref()).into_iter().map(after_trials).collect()
     }
 
-    /// Mean values.
+    /// Prior means of the coefficients, dimensionless.
     pub fn mean(&self) -> DVector<f64> {
         DVector::from_iterator(self.coefficients.len(), self.coefficients.iter().map(|coefficient| coefficient.mean))
     }
@@ -89,7 +89,7 @@ impl HullFormPrior {
     /// Covariance C of the coefficients, and their gain G = C (Λ − Λ₀) on the coefficients of the earlier hull: the
     /// identity if the trials dominate, 0 if they have no information. `None` without trials.
     pub fn covariance_and_gain(&self) -> Option<[DMatrix<f64>; 2]> {
-        let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_trials)?.inverse();
+        let covariance = Cholesky::new(self.precision.clone()).filter(|_| self.has_earlier_trials)?.inverse();
         let gain = &covariance * (&self.precision - precision_of(&self.form));
         Some([covariance, gain])
     }
@@ -98,24 +98,24 @@ impl HullFormPrior {
     pub(super) fn add(&mut self, ship: &HullParticulars, earlier: &[&EarlierHull]) {
         let mut precision = self.precision.clone();
         let mut vector = &precision * self.mean();
-        let mut has_trials = false;
+        let mut has_earlier_trials = false;
         for hull in earlier {
             let Some((added_precision, added_vector)) = hull.information(self, ship) else { continue };
             precision += added_precision;
             vector += added_vector;
-            has_trials = true;
+            has_earlier_trials = true;
         }
-        let Some(factor) = Cholesky::new(precision.clone()).filter(|_| has_trials) else { return };
+        let Some(factor) = Cholesky::new(precision.clone()).filter(|_| has_earlier_trials) else { return };
         let (mean, covariance) = (factor.solve(&vector), factor.inverse());
-        for (place, HullCoefficient { mean: value, sd, ends, .. }) in self.coefficients.iter_mut().enumerate() {
-            (*value, *sd) = (mean[place].clamp(ends[0], ends[1]), covariance[(place, place)].sqrt());
+        for (place, HullCoefficient { mean: value, sd, bounds, .. }) in self.coefficients.iter_mut().enumerate() {
+            (*value, *sd) = (mean[place].clamp(bounds[0], bounds[1]), covariance[(place, place)].sqrt());
         }
-        (self.precision, self.has_trials) = (precision, true);
+        (self.precision, self.has_earlier_trials) = (precision, true);
     }
 }
 
 /// Prior precision Λ₀ of the coefficients of a form: the inverse of their covariance.
-fn precision_of(form: &HullForm) -> DMatrix<f64> {
+fn precision_of(form: &HullModel) -> DMatrix<f64> {
     Cholesky::new(form.covariance().clone()).expect("a covariance").inverse()
 }
 
@@ -171,8 +171,8 @@ impl EarlierHull {
     fn carried(&self, prior: &HullFormPrior, ship: &HullParticulars, before: &[HullCoefficient]) -> Vec<f64> {
         // A particular that only one ship declares has no effect.
         let filled = self.particulars.with_missing_from(ship);
-        let forms = HullForm::candidates(Some(&filled));
-        let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullForm::coefficients);
+        let forms = HullModel::candidates(Some(&filled));
+        let of_filled = forms.iter().find(|form| form.as_str() == self.form.as_str()).map(HullModel::coefficients);
         let generic = prior.form.coefficients();
         let moved = |(place, coefficient): (usize, &HullCoefficient)| {
             coefficient.mean + of_filled.as_ref().map_or(0.0, |filled| generic[place].mean - filled[place].mean)

@@ -10,9 +10,9 @@
 //! with the duration T of a record, mean squares ē² of its residuals, and the standard deviations σ of
 //! [`ResidualDeviations`], which describe the error of the form and not of a sensor: a hull of ten or twenty
 //! coefficients only approximates the ship. They start large and follow the residual of every record, down to 1°, 0.2°
-//! and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A yaw rate is not fitted in
-//! addition to the heading. In the whole replay, with a deviation of at least 0.02 U₀/L, it changed the heading error
-//! on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced it in 5 of 11 sets.
+//! and 0.1 U₀. A sway velocity is not fitted: logs do not give its point of reference. A recorded yaw rate is not
+//! fitted in addition to the heading. A fit to it in the whole replay, with a deviation of at least 0.02 U₀/L, changed
+//! the heading error on other records of KVLCC2 by a factor of 0.96 ± 0.02, and reduced the error in 5 of 11 sets.
 //!
 //! The n records of a ship weigh as much as a single record of their mean length: the error of the form is similar in
 //! all records. The turn is typical of nearly every ship; zig-zags hardly determine it, and a form fitted to zig-zags
@@ -24,6 +24,7 @@
 //! form; output error with priors as in Ljung (1999), System Identification: Theory for the User.
 
 mod conflict;
+mod earlier_merge;
 mod error;
 mod form_prior;
 mod moment;
@@ -31,7 +32,6 @@ mod objective;
 mod replayed;
 mod track;
 mod turn;
-mod weighed;
 
 use std::f64::consts::PI;
 
@@ -44,6 +44,7 @@ use ship::vessel::scaled::ScaledHull;
 use trial::Trial;
 
 pub use conflict::PriorCheck;
+pub use earlier_merge::merge_with_earlier;
 pub use error::HullFitError;
 pub use form_prior::{EarlierHull, HullFormPrior, differs_in_froude_number};
 pub use moment::MisfitMoment;
@@ -51,7 +52,6 @@ pub use objective::ResidualDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
 use track::HullTrack;
-pub use weighed::merge_with_earlier;
 
 /// Rules of the Levenberg-Marquardt search.
 const RULES: SearchSettings = SearchSettings {
@@ -76,9 +76,9 @@ pub struct HullResidual {
     /// Name of the record.
     pub name: String,
     /// Root mean square heading error of the whole replay, rad.
-    pub whole: f64,
+    pub whole_replay_rms: f64,
     /// Root mean square heading error in windows of 3.5 L/U₀, rad.
-    pub window: f64,
+    pub window_rms: f64,
     /// Yaw rate with which the whole replay begins, rad/s.
     pub initial_yaw_rate: f64,
 }
@@ -95,7 +95,7 @@ pub struct HullEstimate {
     /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
     /// Residuals of the records.
-    pub records: Vec<HullResidual>,
+    pub residuals: Vec<HullResidual>,
     /// Model error of the form, as a random yaw moment.
     pub moment: MisfitMoment,
 }
@@ -124,8 +124,8 @@ pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, Hull
     let misfits = problem.misfits(search.estimate.as_slice()).unwrap_or_default();
     let residual = |(trial, misfit): (&Trial, objective::Misfit)| HullResidual {
         name: trial.name().to_owned(),
-        whole: misfit.whole.sqrt(),
-        window: misfit.window.sqrt(),
+        whole_replay_rms: misfit.whole.sqrt(),
+        window_rms: misfit.window.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.ship_length_time(),
     };
     let moment = MisfitMoment::from_misfits(
@@ -134,9 +134,9 @@ pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, Hull
         &misfits,
     );
     let moment = MisfitMoment { correlation_time: moment.correlation_time * reference.ship_length_time(), ..moment };
-    let records = trials.iter().zip(misfits).map(residual).collect();
+    let residuals = trials.iter().zip(misfits).map(residual).collect();
     let prior = prior.clone();
-    Ok(HullEstimate { prior, reference, values: search.estimate, covariance, records, moment })
+    Ok(HullEstimate { prior, reference, values: search.estimate, covariance, residuals, moment })
 }
 
 /// Reason why no hull can be fitted to these records of one ship; `None` if a fit is possible.
@@ -146,7 +146,7 @@ pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
 
 /// Dimensionless records of one ship, and their reference quantities.
 fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
-    let reference = trials.iter().find_map(HullReference::from_trial).ok_or(HullFitError::Particulars)?;
+    let reference = trials.iter().find_map(HullReference::from_trial).ok_or(HullFitError::MissingParticulars)?;
     let tracks = trials.iter().map(|trial| HullTrack::from_trial(trial, &reference)).collect::<Result<_, _>>()?;
     Ok((reference, tracks))
 }
@@ -164,7 +164,7 @@ pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
 /// Hulls supported by their records: the residual of whole records is at most three times the smallest residual of all
 /// hulls and of another model (`rival`, rad; infinite without another model).
 pub fn supported_hulls(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate> {
-    let residual = |hull: &HullEstimate| hull.mean_square().sqrt();
+    let residual = |hull: &HullEstimate| hull.mean_square_heading_error().sqrt();
     let smallest = hulls.iter().map(residual).fold(rival, f64::min);
     hulls.into_iter().filter(|hull| residual(hull) <= MAX_RESIDUAL_RATIO * smallest).collect()
 }
@@ -173,9 +173,9 @@ impl HullEstimate {
     /// Hull with the estimated coefficients at the size and speed of the ship, for replays.
     pub fn scaled_hull<R: Real>(&self) -> ScaledHull<R> {
         let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
-        let HullReference { length, speed, propeller } = self.reference;
+        let HullReference { length, speed, propeller_rate } = self.reference;
         let hull = self.prior.form.with_coefficients(&values).expect("the fit has replayed it");
-        ScaledHull { hull, length, speed, propeller }
+        ScaledHull { hull, length, speed, propeller: propeller_rate }
     }
 
     /// Variance of the replayed heading of a record over time (s), rad²: from the covariance of the coefficients and
@@ -184,12 +184,12 @@ impl HullEstimate {
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
         let track = HullTrack::from_trial(trial, &self.reference).ok()?;
         let [time, mut variance] = heading_variances(&self.prior, &track, self.values.as_slice(), &self.covariance)?;
-        let residual = self.mean_square();
+        let residual = self.mean_square_heading_error();
         variance.iter_mut().for_each(|value| *value += residual);
         if variance.iter().any(|value| *value > PI * PI) {
             return None;
         }
-        Polyline::new(time.into_iter().map(|t| t * track.second).collect(), variance).ok()
+        Polyline::new(time.into_iter().map(|t| t * track.ship_length_time).collect(), variance).ok()
     }
 
     /// Check of the prior against the records; `None` if the records add no information.
@@ -198,8 +198,9 @@ impl HullEstimate {
     }
 
     /// Mean over the records, with equal weights, of the mean square heading error of the whole replay, rad².
-    pub fn mean_square(&self) -> f64 {
-        self.records.iter().map(|record| record.whole * record.whole).sum::<f64>() / self.records.len() as f64
+    pub fn mean_square_heading_error(&self) -> f64 {
+        self.residuals.iter().map(|residual| residual.whole_replay_rms.powi(2)).sum::<f64>()
+            / self.residuals.len() as f64
     }
 }
 

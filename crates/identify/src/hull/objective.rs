@@ -8,7 +8,7 @@ use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
 use super::form_prior::HullFormPrior;
-use super::replayed::{ReplayedWindow, replay_rows};
+use super::replayed::{ReplayedWindow, replay_rows, replay_rows_in_lanes};
 use super::track::HullTrack;
 use super::turn::HardTurn;
 
@@ -53,7 +53,7 @@ pub(super) struct Misfit {
     pub initial_yaw_rate: f64,
 }
 
-/// Yaw rates at the start of a record and of its windows, kept between evaluations.
+/// Yaw rates at the start of a record and of its windows, U₀/L, kept between evaluations.
 #[derive(Debug, Clone)]
 struct Starts {
     whole: [f64; 1],
@@ -153,7 +153,8 @@ fn replay_windows(
     }
 }
 
-/// Mean square heading residual of the windows of a record, rad²; `rates` are the yaw rates at their starts, U₀/L.
+/// Mean square heading residual of the windows of a record, rad², each from its best initial yaw rate. `rates` (U₀/L)
+/// returns these yaw rates; if `is_begun`, the search starts at its values.
 pub(super) fn window_mean_square(
     hull: &PrimeHull<Dual<1>>,
     track: &HullTrack,
@@ -225,7 +226,7 @@ impl<'a> HullObjective<'a> {
 
 impl Objective for HullObjective<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        self.prior.coefficients[unknown].ends
+        self.prior.coefficients[unknown].bounds
     }
 
     /// Σ over records of their weights times mean squares over variances, the priors, and the turn with the rudder hard
@@ -247,14 +248,14 @@ impl Objective for HullObjective<'_> {
 
     fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
         let value = self.value(at);
-        *normal = NormalEquations { matrix: self.prior.precision.clone(), gradient: self.prior_terms(at).0 };
+        *normal = NormalEquations { matrix: self.prior.precision.clone(), right_hand_side: self.prior_terms(at).0 };
         let values: Vec<Dual<DIRECTIONS>> =
             at.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
         let Some(hull) = self.prior.form.with_coefficients(&values) else { return f64::INFINITY };
         for departure in self.turn.departures(&hull) {
             let by = DVector::from_column_slice(&departure.derivatives[..at.len()]);
             normal.matrix.ger(1.0, &by, &by, 1.0);
-            normal.gradient.axpy(-departure.value, &by, 1.0);
+            normal.right_hand_side.axpy(-departure.value, &by, 1.0);
         }
         for ((track, starts), deviations) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
             let ResidualDeviations { whole, window, speed } = *deviations;
@@ -280,25 +281,26 @@ fn add(
     weight: f64,
     speed_weight: Option<f64>,
 ) {
-    let unknowns = normal.gradient.len();
+    let unknowns = normal.right_hand_side.len();
     let mut start = track.start.map(Dual::from);
     for (ends, &rate) in window_bounds.windows(2).zip(rates) {
         // Surge and sway at this start do not depend on its yaw rate.
         start.iter_mut().for_each(|velocity| velocity.derivatives[unknowns] = 0.0);
         let variable = Dual::variable(rate, unknowns, 1.0);
-        let ReplayedWindow { rows, end } = replay_rows(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
+        let ReplayedWindow { rows, end } =
+            replay_rows_in_lanes(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
         start = [end[0], end[1]];
         let (columns, shares) = heading_columns(&rows, &track.heading[ends[0]..ends[1]], unknowns);
         add_squares(normal, &columns, unknowns + 1, weight);
         let Some((weight, measured)) = speed_weight.zip(track.speed.as_ref()) else { continue };
-        let columns = DMatrix::from_fn(rows.len(), unknowns + 2, |i, j| {
-            let replayed_speed = rows[i][1].hypot(rows[i][2]);
-            match j {
-                _ if j > unknowns => measured[ends[0] + i] - replayed_speed.value,
-                _ if j == unknowns => 0.0,
-                _ => replayed_speed.derivatives[j] - shares[j] * replayed_speed.derivatives[unknowns],
+        let mut columns = DMatrix::zeros(rows.len(), unknowns + 2);
+        for (i, [_, u, v]) in rows.iter().enumerate() {
+            let replayed_speed = u.hypot(*v);
+            for (j, share) in shares[..unknowns].iter().enumerate() {
+                columns[(i, j)] = replayed_speed.derivatives[j] - share * replayed_speed.derivatives[unknowns];
             }
-        });
+            columns[(i, unknowns + 1)] = measured[ends[0] + i] - replayed_speed.value;
+        }
         add_squares(normal, &columns, unknowns + 1, weight);
     }
 }
@@ -342,7 +344,7 @@ pub(super) fn heading_variances(
     let [u, v] = track.start.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
     let ReplayedWindow { rows, .. } =
-        replay_rows(&prior.form.with_coefficients(&variables)?, track, track.whole, start);
+        replay_rows_in_lanes(&prior.form.with_coefficients(&variables)?, track, track.whole, start);
     let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;
@@ -356,5 +358,5 @@ pub(super) fn heading_variances(
 fn add_squares(normal: &mut NormalEquations, columns: &DMatrix<f64>, error: usize, weight: f64) {
     let regressors = columns.columns(0, error - 1);
     normal.matrix.gemm_tr(weight, &regressors, &regressors, 1.0);
-    normal.gradient.gemv_tr(weight, &regressors, &columns.column(error), 1.0);
+    normal.right_hand_side.gemv_tr(weight, &regressors, &columns.column(error), 1.0);
 }

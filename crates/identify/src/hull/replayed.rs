@@ -1,5 +1,6 @@
 //! Replay of the rudder of a record, or of a part, through a hull.
 
+use estimation::lanes::{Kernel, run};
 use estimation::number::Real;
 use ship::vessel::prime::PrimeHull;
 
@@ -8,14 +9,16 @@ use super::track::HullTrack;
 /// Maximum step of the solver, in L/U₀.
 const MAX_STEP_LENGTHS: f64 = 0.08;
 
-/// Replay of a window: rows of states, each (ψ, u, v).
+/// Replay of a window: (ψ, u, v) in every row, ψ in rad, u and v in units of U₀.
 pub(super) struct ReplayedWindow<R> {
     pub rows: Vec<[R; 3]>,
     /// State (u, v, r) at the first row after the window, or at the last row of the record.
     pub end: [R; 3],
 }
 
-/// Steps a hull through rows `from..to` from (u, v, r), with a heading of zero at the first of them (Heun).
+/// Replay of rows `from..to` of a track through a hull, from the state (u, v, r) and a heading of zero in row `from`.
+/// Steps by the method of Heun.
+#[inline(always)]
 pub(super) fn replay_rows<R: Real>(
     hull: &PrimeHull<R>,
     track: &HullTrack,
@@ -33,21 +36,51 @@ pub(super) fn replay_rows<R: Real>(
         let step = span / pieces;
         let between = |values: &[f64], share: f64| values[row - 1] + share * (values[row] - values[row - 1]);
         for piece in 0..pieces as usize {
-            let rates = |state: [R; 3], piece: usize| {
-                let share = piece as f64 / pieces;
+            let mut stages = [state; 2];
+            let mut rates = [state; 2];
+            for stage in 0..2 {
+                let share = (piece + stage) as f64 / pieces;
                 let rudder = R::from(between(&track.rudder, share));
                 let wind = track.wind.as_ref().map_or([0.0; 3], |xyz| xyz.each_ref().map(|axis| between(axis, share)));
-                hull.accelerations(state, rudder, between(&track.n_ratio, share), between(&track.moment, share), wind)
-            };
-            let first = rates(state, piece);
-            let ahead: [R; 3] = std::array::from_fn(|i| state[i] + first[i] * step);
-            let second = rates(ahead, piece + 1);
-            heading = heading + (state[2] + ahead[2]) * (0.5 * step);
-            state = std::array::from_fn(|i| state[i] + (first[i] + second[i]) * (0.5 * step));
+                let (n_ratio, moment) = (between(&track.n_ratio, share), between(&track.moment, share));
+                rates[stage] = hull.accelerations(stages[stage], rudder, n_ratio, moment, wind);
+                if stage == 0 {
+                    stages[1] = std::array::from_fn(|i| state[i] + rates[0][i] * step);
+                }
+            }
+            heading = heading + (state[2] + stages[1][2]) * (0.5 * step);
+            state = std::array::from_fn(|i| state[i] + (rates[0][i] + rates[1][i]) * (0.5 * step));
         }
         if row < to {
             rows.push([heading, state[0], state[1]]);
         }
     }
     ReplayedWindow { rows, end: state }
+}
+
+/// [`replay_rows`] in vector arithmetic, for numbers with many derivatives.
+pub(super) fn replay_rows_in_lanes<R: Real>(
+    hull: &PrimeHull<R>,
+    track: &HullTrack,
+    rows: [usize; 2],
+    start: [R; 3],
+) -> ReplayedWindow<R> {
+    run(RowReplay { hull, track, rows, start })
+}
+
+/// Arguments of [`replay_rows`].
+struct RowReplay<'a, R> {
+    hull: &'a PrimeHull<R>,
+    track: &'a HullTrack,
+    rows: [usize; 2],
+    start: [R; 3],
+}
+
+impl<R: Real> Kernel for RowReplay<'_, R> {
+    type Output = ReplayedWindow<R>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        replay_rows(self.hull, self.track, self.rows, self.start)
+    }
 }

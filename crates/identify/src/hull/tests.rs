@@ -7,7 +7,7 @@ use ship::angle::{from_deg, to_deg};
 use ship::integrate::RungeKutta4;
 use ship::ships::kvlcc2::MODEL_L7;
 use ship::vessel::mmg::Mmg;
-use ship::vessel::prime::HullForm;
+use ship::vessel::prime::HullModel;
 use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
 use ship::{Dynamics, Input, MeasuredChannels, Motion, Particulars};
@@ -25,8 +25,8 @@ pub(super) const TRUTH: [f64; 19] =
     [-2.6, -1.8, 1.05, -0.7, -0.45, -0.14, 0.4, 0.0, 0.01, 0.08, 0.5, 1.7, 0.08, 0.08, -1.0, -0.4, -0.9, 0.1, 2.5e-3];
 
 /// Quadratic form of any ship.
-fn form() -> HullForm {
-    HullForm::candidates(None).swap_remove(0)
+fn form() -> HullModel {
+    HullModel::candidates(None).swap_remove(0)
 }
 
 pub(super) fn hull(truth: &[f64; 19]) -> ScaledHull {
@@ -85,8 +85,8 @@ fn a_hull_of_the_form_comes_back() {
         assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", prior.symbol);
         assert!(prior.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", prior.symbol);
     }
-    for left in &fitted.records {
-        assert!(to_deg(left.whole) < 0.2, "{}: {}°", left.name, to_deg(left.whole));
+    for left in &fitted.residuals {
+        assert!(to_deg(left.whole_replay_rms) < 0.2, "{}: {}°", left.name, to_deg(left.whole_replay_rms));
     }
     assert!(fitted.moment.deviation < from_deg(0.2), "{:?}", fitted.moment);
 }
@@ -144,7 +144,10 @@ fn a_measured_wind_tells_how_it_acts() {
     let [windage, truth] = [found.values[18], TRUTH[18]];
     assert!((windage / truth - 1.0).abs() < 0.05, "{windage}");
     assert_eq!(blind.values[18], blind.prior.coefficients[18].mean);
-    assert!(3.0 * found.mean_square().sqrt() < blind.mean_square().sqrt(), "{found:?} {blind:?}");
+    assert!(
+        3.0 * found.mean_square_heading_error().sqrt() < blind.mean_square_heading_error().sqrt(),
+        "{found:?} {blind:?}"
+    );
 }
 
 /// KVLCC2 has no polynomial form, and differs from the MMG form in wake and propeller: a single 20/20 predicts her
@@ -154,7 +157,7 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     let ship = Mmg::at_speed(MODEL_L7, SPEED).expect("it balances");
     let [fitted, other] = [20.0, 10.0].map(|angle| record(&ship, [angle, angle], |_| 0.0));
     let dimensions = HullParticulars { length: LENGTH, speed: SPEED, beam: Some(1.27), ..HullParticulars::default() };
-    for form in HullForm::candidates(Some(&dimensions)) {
+    for form in HullModel::candidates(Some(&dimensions)) {
         let prior = HullFormPrior::from_form(form);
         let estimate = fit(std::slice::from_ref(&fitted), &prior).expect("a fit");
         let tracks = [HullTrack::from_trial(&other, &estimate.reference).expect("a record")];
@@ -241,7 +244,7 @@ fn the_hulls_that_records_speak_for_are_near_them() {
     let found = supported_hulls(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
     // All three forms are fitted; the quadratic form is the truth, and forms with three times its residual are left
     // out.
-    let left: Vec<f64> = found.iter().map(|hull| hull.mean_square().sqrt()).collect();
+    let left: Vec<f64> = found.iter().map(|hull| hull.mean_square_heading_error().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].prior.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
     assert!(supported_hulls(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
@@ -252,7 +255,7 @@ fn the_hulls_that_records_speak_for_are_near_them() {
 fn a_trial_at_slow_ahead_is_one() {
     let trial = &records(|_| 0.0)[0];
     let slow = beside_constants(trial, &[(Channel::PropellerRate, 3.5)]);
-    let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller: Some(10.0) };
+    let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller_rate: Some(10.0) };
     assert!((HullTrack::from_trial(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
 }
 
@@ -272,11 +275,11 @@ fn records_that_tell_no_hull_are_refused() {
     };
     let slow = |columns: &mut Columns| columns.channels.get_mut(&Channel::Speed).expect("a speed").fill(0.3 * SPEED);
     let [bare, slow] = refused(slow);
-    assert_eq!(bare, Some(HullFitError::Particulars));
+    assert_eq!(bare, Some(HullFitError::MissingParticulars));
     assert!(matches!(slow, Some(HullFitError::StartsNearRest { .. })), "{slow:?}");
     let short = |columns: &mut Columns| {
         columns.time.truncate(10);
         columns.channels.values_mut().for_each(|values| values.truncate(10));
     };
-    assert!(matches!(refused(short)[1], Some(HullFitError::Short(_))));
+    assert!(matches!(refused(short)[1], Some(HullFitError::TooFewHeadings(_))));
 }

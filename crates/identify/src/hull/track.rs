@@ -28,7 +28,7 @@ pub struct HullReference {
     /// Approach speed U₀, m/s.
     pub speed: f64,
     /// Rate of the propeller at that speed, 1/s; `None` if it was not recorded.
-    pub propeller: Option<f64>,
+    pub propeller_rate: Option<f64>,
 }
 
 impl HullReference {
@@ -36,8 +36,8 @@ impl HullReference {
     pub fn from_trial(trial: &Trial) -> Option<Self> {
         let particulars = trial.particulars()?;
         let rates = trial.channel(Channel::PropellerRate);
-        let propeller = rates.and_then(|rates| upper_median(rates.iter().copied())).filter(|rate| *rate > 0.0);
-        Some(Self { length: particulars.length, speed: particulars.speed, propeller })
+        let propeller_rate = rates.and_then(|rates| upper_median(rates.iter().copied())).filter(|rate| *rate > 0.0);
+        Some(Self { length: particulars.length, speed: particulars.speed, propeller_rate })
     }
 
     /// Ship-length time L/U₀, s.
@@ -52,7 +52,7 @@ pub(super) struct HullTrack {
     /// Time, L/U₀.
     pub time: Vec<f64>,
     /// L/U₀, s.
-    pub second: f64,
+    pub ship_length_time: f64,
     /// Heading, rad; NaN if it was not recorded.
     pub heading: Vec<f64>,
     /// Rudder angle, rad.
@@ -77,18 +77,18 @@ impl HullTrack {
     /// Track of a record. Fails for a record with too few headings, a clock that does not fit this length and speed, or
     /// a start near rest.
     pub fn from_trial(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
-        let second = reference.ship_length_time();
-        let [row, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / second);
-        if row > MAX_INTERVAL_LENGTHS || whole > MAX_DURATION_LENGTHS {
-            return Err(HullFitError::Clock { trial: trial.name().to_owned(), row, whole });
+        let ship_length_time = reference.ship_length_time();
+        let [row_interval, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / ship_length_time);
+        if row_interval > MAX_INTERVAL_LENGTHS || whole > MAX_DURATION_LENGTHS {
+            return Err(HullFitError::ImplausibleTimes { trial: trial.name().to_owned(), row_interval, whole });
         }
-        let short = || HullFitError::Short(trial.name().to_owned());
-        let track = Self::cut(trial, reference).ok_or_else(short)?;
+        let too_few = || HullFitError::TooFewHeadings(trial.name().to_owned());
+        let track = Self::cut(trial, reference).ok_or_else(too_few)?;
         // Approach speed at the propeller rate of this record, which may differ from the reference.
         let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
-        let share = track.start[0] * reference.length / (track.second * approach);
-        match share < MIN_START_SPEED {
-            true => Err(HullFitError::StartsNearRest { trial: trial.name().to_owned(), share }),
+        let speed_ratio = track.start[0] * reference.length / (track.ship_length_time * approach);
+        match speed_ratio < MIN_START_SPEED {
+            true => Err(HullFitError::StartsNearRest { trial: trial.name().to_owned(), speed_ratio }),
             false => Ok(track),
         }
     }
@@ -105,7 +105,7 @@ impl HullTrack {
             window_bounds: vec![0, 2],
             whole: [0, 2],
             start: [1.0, 0.0],
-            second: 1.0,
+            ship_length_time: 1.0,
             speed: None,
             time: vec![0.0, duration],
         }
@@ -116,10 +116,11 @@ impl HullTrack {
         let (first, last) = (*rows.first()?, *rows.last()?);
         let record_reference = HullReference::from_trial(trial).unwrap_or(*reference);
         // Without a propeller rate the unit of speed comes from the record.
-        let approach_rate = reference.propeller.zip(record_reference.propeller).map(|(reference, _)| reference);
+        let approach_rate =
+            reference.propeller_rate.zip(record_reference.propeller_rate).map(|(reference, _)| reference);
         let speed_unit = if approach_rate.is_some() { reference.speed } else { record_reference.speed };
-        let second = reference.length / speed_unit;
-        let group = ((SPACING * second / trial.sampling_period()) as usize).max(1);
+        let ship_length_time = reference.length / speed_unit;
+        let group = ((SPACING * ship_length_time / trial.sampling_period()) as usize).max(1);
         let take = |values: &[f64]| -> Vec<f64> { values[first..=last].chunks(group).map(mean_of_read).collect() };
         let channel = |channel: Channel, unit: f64| {
             let values = filled(take(trial.channel(channel)?))?;
@@ -130,7 +131,7 @@ impl HullTrack {
             let surge = channel(Channel::Surge, speed_unit)?;
             Some(surge.iter().zip(sway.as_ref()?).map(|(u, v)| u.hypot(*v)).collect())
         });
-        let time: Vec<f64> = take(trial.time()).into_iter().map(|t| t / second).collect();
+        let time: Vec<f64> = take(trial.time()).into_iter().map(|t| t / ship_length_time).collect();
         let speed = speed.or_else(|| {
             let [north, east] = [Channel::North, Channel::East].map(|axis| trial.channel(axis).map(take));
             filled(over_ground(&time, &north?, &east?))
@@ -156,7 +157,7 @@ impl HullTrack {
             window_bounds: window_bounds(&time),
             whole: [0, count],
             start: [surge, drift],
-            second,
+            ship_length_time,
             time,
             speed,
         })

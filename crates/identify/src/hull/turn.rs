@@ -54,7 +54,7 @@ mod tests {
     use ship::Input;
     use ship::integrate::RungeKutta4;
     use ship::ships::{Ship, ShipModel};
-    use ship::vessel::prime::HullForm;
+    use ship::vessel::prime::HullModel;
 
     /// Published hulls turn as expected within 2.5 standard deviations, as do the forms before any record.
     #[test]
@@ -65,7 +65,7 @@ mod tests {
         for (name, figures) in turns {
             assert!(!departs(figures[0], CURVATURE) && !departs(figures[1], PIVOT), "{name}: {figures:?}");
         }
-        for form in HullForm::candidates(None) {
+        for form in HullModel::candidates(None) {
             let values: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
             let departures = HardTurn::new().departures(&form.with_coefficients(&values).expect("a ship"));
             assert!(departures.iter().all(|departure| departure.abs() < 2.5), "{}: {departures:?}", form.as_str());

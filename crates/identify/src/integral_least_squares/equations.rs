@@ -23,7 +23,7 @@ pub(super) struct IntegratedStretch<'a> {
 }
 
 impl<'a> IntegratedStretch<'a> {
-    /// Equations of a stretch, with time and heading measured from its first row: terms linear in time belong to the
+    /// Equations of a stretch. Time and heading have their origins within it: terms linear in time belong to the
     /// initial state, so the origins affect only rounding.
     pub(super) fn new(samples: &'a Samples, range: Range<usize>) -> Self {
         let (time, heading) = (&samples.time[range.clone()], &samples.heading[range.clone()]);
@@ -54,14 +54,14 @@ impl<'a> IntegratedStretch<'a> {
         let [x0, x1, x2, y] = &self.columns;
         let sums = Matrix4::from(gram([x0, x1, x2, y]));
         for i in 0..SHARED_PARAMETERS {
-            lengths[i] += sums[(i, i)] + count * removed[i].mean.powi(2) + removed[i].share.powi(2);
+            lengths[i] += sums[(i, i)] + count * removed[i].mean.powi(2) + removed[i].component.powi(2);
         }
         *products += sums;
     }
 }
 
-/// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope at a row is the slope of the chord between
-/// its neighbours.
+/// −∫(value − value₀) at every row by cubic Hermite interpolation; the slope at a row is that of the chord between its
+/// neighbours.
 ///
 /// The trapezoid rule would make T too small by the share (h/T)²/12; with equal steps this is the rule of weights
 /// (−1, 13, 13, −1)/24. On unequal steps a parabola through three rows would give a smoother slope, but it depends
@@ -86,7 +86,7 @@ pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     integral
 }
 
-/// Least-squares solution, normal matrix and condition number.
+/// Least-squares solution, with the inverse of the normal matrix and the condition number.
 #[derive(Debug)]
 pub(super) struct Solution {
     /// a, b, b δ_r.
@@ -98,7 +98,8 @@ pub(super) struct Solution {
 }
 
 impl Solution {
-    /// Solution of the equations; the columns of the pieces stay projected.
+    /// Solution of the equations; the columns of the pieces stay projected. Fails with [`IdentifyError::Singular`]
+    /// above `max_condition`.
     pub(super) fn from_stretches(pieces: &mut [IntegratedStretch], max_condition: f64) -> Result<Self, IdentifyError> {
         let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
         for piece in pieces {

@@ -1,13 +1,14 @@
 //! Columns of heading and yaw rate whose linear combinations are the first-order responses for one 1/T.
 
-/// Columns of the heading except the constant column, at the observed rows.
+/// Responses φ₁, G and H of the heading at the observed rows, and their time derivatives at the rows with a yaw rate.
+/// The constant column of the heading is left out.
 #[derive(Debug, Clone, Default)]
 pub struct MotionColumns {
-    /// φ₁(t − t₁), s.
+    /// Response φ₁(t − t₁) to the yaw rate at the anchor t₁, s.
     pub homogeneous: Vec<f64>,
-    /// Response G to the rudder, rad s².
+    /// Response G to the rudder, divided by b = K/T, rad s².
     pub rudder: Vec<f64>,
-    /// Response H to a constant, s².
+    /// Response H to a constant yaw acceleration, s².
     pub constant: Vec<f64>,
     /// Columns of the yaw rate, at the rows where it is used.
     pub rates: RateColumns,
@@ -47,7 +48,7 @@ impl MotionColumns {
 }
 
 impl RateColumns {
-    /// The three columns.
+    /// Columns of the yaw rate: φ₁', G' and H'.
     pub fn all(&self) -> [&[f64]; 3] {
         [&self.homogeneous, &self.rudder, &self.constant]
     }
@@ -60,11 +61,11 @@ impl RateColumns {
 /// Columns of the yaw rate, the time derivatives of the heading columns.
 #[derive(Debug, Clone, Default)]
 pub struct RateColumns {
-    /// exp(−a (t − t₁)).
+    /// Response φ₁' = exp(−a (t − t₁)) to the yaw rate at the anchor t₁, dimensionless.
     pub homogeneous: Vec<f64>,
-    /// Response G' to the rudder, rad s.
+    /// Response G' to the rudder, divided by b = K/T, rad s.
     pub rudder: Vec<f64>,
-    /// Response H' to a constant, s.
+    /// Response H' to a constant yaw acceleration, s.
     pub constant: Vec<f64>,
 }
 

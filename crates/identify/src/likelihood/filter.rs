@@ -22,7 +22,7 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
         covariance[place][place] = variance;
     }
     if parameters.moment == MomentKind::OrnsteinUhlenbeck {
-        covariance[2][2] = parameters.level * parameters.level;
+        covariance[2][2] = parameters.moment_level * parameters.moment_level;
     }
     for place in [parameters.rudder_state(), compass].into_iter().flatten() {
         covariance[place][place] = 1.0;
@@ -32,8 +32,8 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
     // In the order of the sensors of `schedule`.
     let sensors = vec![
         StateSensor { state: 0, second_state: compass, variance: white },
-        StateSensor { state: 1, second_state: None, variance: parameters.gyro * parameters.gyro },
+        StateSensor { state: 1, second_state: None, variance: parameters.gyro_error_sd * parameters.gyro_error_sd },
     ];
-    let steps = schedule.spans.iter().map(|span| transition_step(parameters, span)).collect();
+    let steps = schedule.intervals.iter().map(|interval| transition_step(parameters, interval)).collect();
     System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }
 }

@@ -53,11 +53,11 @@ pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, init
     };
     let heading = motion(&columns.rudder, &columns.constant);
     let rate = motion(&columns.rates.rudder, &columns.rates.constant);
-    let mut residual = schedule.stacked(&track.heading, &track.rates);
+    let mut residual = schedule.stacked(&track.heading, &track.yaw_rates);
     let replayed = schedule.stacked(&heading, &rate);
     residual.iter_mut().zip(&replayed).for_each(|(measured, replayed)| *measured -= replayed);
     filter.apply(&mut [&mut residual]);
     let square: f64 = residual.iter().map(|nu| (nu / unit).powi(2)).sum();
     let constant = (2.0 * std::f64::consts::PI * unit * unit).ln();
-    -0.5 * (square + filter.log_variance + residual.len() as f64 * constant)
+    -0.5 * (square + filter.log_determinant + residual.len() as f64 * constant)
 }

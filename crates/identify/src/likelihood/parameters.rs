@@ -45,12 +45,12 @@ impl NoiseVector {
         Self {
             moment: if noise.moment_level > 0.0 { noise.moment } else { MomentKind::None },
             has_rudder_error: noise.rudder_sd > 0.0,
-            has_coloured_compass: noise.heading_correlation.is_some(),
+            has_coloured_compass: noise.heading_correlation_time.is_some(),
             log: [
                 log(noise.moment_level / unit),
-                log(noise.moment_correlation),
+                log(noise.moment_correlation_time),
                 log(ship.K_over_T.abs() * noise.rudder_sd / unit),
-                log(noise.heading_correlation.unwrap_or(0.0)),
+                log(noise.heading_correlation_time.unwrap_or(0.0)),
                 log(noise.yaw_rate_sd.unwrap_or(0.0) / unit),
             ],
         }
@@ -63,11 +63,11 @@ impl NoiseVector {
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
             heading_sd,
-            heading_correlation: self.has_coloured_compass.then(|| self.log[COMPASS_INDEX].exp()),
+            heading_correlation_time: self.has_coloured_compass.then(|| self.log[COMPASS_INDEX].exp()),
             yaw_rate_sd: gyro.then(|| size(GYRO_INDEX)),
             moment: self.moment,
             moment_level: if has_moment { size(LEVEL_INDEX) } else { 0.0 },
-            moment_correlation: match self.moment {
+            moment_correlation_time: match self.moment {
                 MomentKind::OrnsteinUhlenbeck => self.log[CORRELATION_INDEX].exp(),
                 MomentKind::White => 0.0,
                 MomentKind::None | MomentKind::Walk => f64::INFINITY,
@@ -94,11 +94,15 @@ impl NoiseVector {
         NoiseParameters {
             inverse_T,
             moment: self.moment,
-            level: size(LEVEL_INDEX),
-            rate: if self.moment == MomentKind::OrnsteinUhlenbeck { (-self.log[CORRELATION_INDEX]).exp() } else { 0.0 },
-            rudder: self.has_rudder_error.then(|| size(RUDDER_INDEX)),
-            compass_rate: self.has_coloured_compass.then(|| (-self.log[COMPASS_INDEX]).exp()),
-            gyro: size(GYRO_INDEX),
+            moment_level: size(LEVEL_INDEX),
+            moment_inverse_time: if self.moment == MomentKind::OrnsteinUhlenbeck {
+                (-self.log[CORRELATION_INDEX]).exp()
+            } else {
+                0.0
+            },
+            rudder_error_sd: self.has_rudder_error.then(|| size(RUDDER_INDEX)),
+            compass_inverse_time: self.has_coloured_compass.then(|| (-self.log[COMPASS_INDEX]).exp()),
+            gyro_error_sd: size(GYRO_INDEX),
         }
     }
 }
@@ -111,15 +115,15 @@ pub struct NoiseParameters {
     /// Kind of yaw moment.
     pub moment: MomentKind,
     /// Level q/σ of the moment.
-    pub level: f64,
-    /// Rate 1/τ of an Ornstein–Uhlenbeck moment, 1/s; 0 for other moments.
-    pub rate: f64,
+    pub moment_level: f64,
+    /// Inverse correlation time 1/τ of an Ornstein–Uhlenbeck moment, 1/s; 0 for other moments.
+    pub moment_inverse_time: f64,
     /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s²; `None` without a rudder error.
-    pub rudder: Option<f64>,
+    pub rudder_error_sd: Option<f64>,
     /// Inverse correlation time of the compass error, 1/s; `None` for a white error.
-    pub compass_rate: Option<f64>,
+    pub compass_inverse_time: Option<f64>,
     /// Rate-gyro error σ_r/σ, 1/s.
-    pub gyro: f64,
+    pub gyro_error_sd: f64,
 }
 
 impl NoiseParameters {
@@ -131,17 +135,17 @@ impl NoiseParameters {
     /// Number of states: heading, yaw rate, moment, rudder error, compass error.
     pub fn states(&self) -> usize {
         2 + usize::from(self.has_moment_state())
-            + usize::from(self.rudder.is_some())
-            + usize::from(self.compass_rate.is_some())
+            + usize::from(self.rudder_error_sd.is_some())
+            + usize::from(self.compass_inverse_time.is_some())
     }
 
     /// Index of the rudder error among the states; `None` without a rudder error.
     pub fn rudder_state(&self) -> Option<usize> {
-        self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
+        self.rudder_error_sd.map(|_| 2 + usize::from(self.has_moment_state()))
     }
 
     /// Index of the compass error among the states: the last; `None` for a white error, which is no state.
     pub fn compass_state(&self) -> Option<usize> {
-        self.compass_rate.map(|_| self.states() - 1)
+        self.compass_inverse_time.map(|_| self.states() - 1)
     }
 }

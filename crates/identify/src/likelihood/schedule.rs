@@ -28,11 +28,11 @@ impl ReadingInterval {
     }
 }
 
-/// Sequence of the compass and rate-gyro readings of a record, with the time spans between them.
+/// Sequence of the compass and rate-gyro readings of a record, with the intervals between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
     /// Distinct intervals between readings, which the readings refer to by index.
-    pub spans: Vec<ReadingInterval>,
+    pub intervals: Vec<ReadingInterval>,
     /// Readings in order.
     pub readings: Vec<Reading>,
 }
@@ -44,9 +44,9 @@ impl Schedule {
     /// Readings of a track; with `by_row` an interval between readings is divided at the rows of the rudder in it.
     pub fn new(track: &Track, by_row: bool) -> Self {
         let time = &track.time;
-        let mut schedule = Self { spans: Vec::new(), readings: Vec::new() };
+        let mut schedule = Self { intervals: Vec::new(), readings: Vec::new() };
         let mut last = None;
-        let (mut headings, mut rates) = (track.observed.iter().peekable(), track.observed_rates.iter().peekable());
+        let (mut headings, mut rates) = (track.heading_rows.iter().peekable(), track.yaw_rate_rows.iter().peekable());
         let mut pieces = Vec::new();
         while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
             let step = last.map(|last: usize| {
@@ -72,12 +72,12 @@ impl Schedule {
 
     /// Index of the step over these pieces, s, stored if none of the last [`MAX_RECENT_KINDS`] steps has them.
     fn kind(&mut self, pieces: &[f64]) -> usize {
-        let recent = self.spans.len().saturating_sub(MAX_RECENT_KINDS);
-        if let Some(place) = self.spans[recent..].iter().rposition(|span| span.has_pieces(pieces)) {
+        let recent = self.intervals.len().saturating_sub(MAX_RECENT_KINDS);
+        if let Some(place) = self.intervals[recent..].iter().rposition(|interval| interval.has_pieces(pieces)) {
             return recent + place;
         }
-        self.spans.push(ReadingInterval { pieces: pieces.to_vec() });
-        self.spans.len() - 1
+        self.intervals.push(ReadingInterval { pieces: pieces.to_vec() });
+        self.intervals.len() - 1
     }
 
     /// Column of all readings from the columns of the two instruments.

@@ -9,13 +9,13 @@ use super::track::{RudderCorner, Track, TrackStep, durations_differ, is_backward
 /// Fills the columns of a track and their derivatives with respect to a = `inverse_T`, 1/s.
 pub fn fill_with_tangents(track: &Track, inverse_T: f64, columns: &mut MotionColumns, tangents: &mut MotionColumns) {
     let (rows, anchor) = (track.time.len(), track.anchor_row(is_backward(inverse_T)));
-    let has_rates = !track.observed_rates.is_empty();
+    let has_rates = !track.yaw_rate_rows.is_empty();
     for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
         columns.reset(rows, has_rates.then_some((anchor, rate)));
     }
     run(MotionsWithTangents { track, inverse_T, columns, tangents });
     for columns in [columns, tangents] {
-        columns.keep(&track.observed, &track.observed_rates);
+        columns.keep(&track.heading_rows, &track.yaw_rate_rows);
     }
 }
 
@@ -33,14 +33,15 @@ impl Kernel for MotionsWithTangents<'_> {
     #[inline(always)]
     fn call(self) {
         let Self { track, inverse_T, columns, tangents } = self;
-        let has_rates = !track.observed_rates.is_empty();
+        let has_rates = !track.yaw_rate_rows.is_empty();
         let ([f, g, h], [fr, gr, hr]) = columns.slices();
         let ([df, dg, dh], [dfr, dgr, dhr]) = tangents.slices();
         // A fourth motion rests, for alignment.
         let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
         let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
         let mut step = TangentTransition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: slope, bend } in track.steps(is_backward(inverse_T)) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: slope, corner } in track.steps(is_backward(inverse_T))
+        {
             if durations_differ(step.value.h, duration) {
                 step = TangentTransition::new(inverse_T, duration);
             }
@@ -54,7 +55,7 @@ impl Kernel for MotionsWithTangents<'_> {
                 heading[motion] += f0.phi1 * rate[motion] + of_heading[motion];
                 rate[motion] = f0.decay * rate[motion] + of_rate[motion];
             }
-            if let Some(RudderCorner { remaining, change }) = bend {
+            if let Some(RudderCorner { remaining, change }) = corner {
                 let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_T, remaining);
                 heading[1] += value.phi3 * change;
                 rate[1] += value.phi2 * change;

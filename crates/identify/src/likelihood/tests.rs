@@ -38,7 +38,7 @@ fn noise(moment: MomentKind, level: f64, correlation: f64) -> NoiseModel {
     NoiseModel {
         moment,
         moment_level: level,
-        moment_correlation: correlation,
+        moment_correlation_time: correlation,
         ..NoiseModel::compass(from_deg(SIGMA_DEG))
     }
 }
@@ -110,25 +110,25 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
                     _ if s < 0.0 => zero,
                     MomentKind::White => Transition::new(a, s).advance(State { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0),
                     MomentKind::Walk => Transition::new(a, s).advance(zero, 1.0, 0.0),
-                    MomentKind::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation, s),
+                    MomentKind::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation_time, s),
                 }
             };
             let density = match noise.moment {
-                MomentKind::OrnsteinUhlenbeck => 2.0 / noise.moment_correlation,
+                MomentKind::OrnsteinUhlenbeck => 2.0 / noise.moment_correlation_time,
                 _ => 1.0,
             };
             source(&time.iter().map(|&t| motion(t)).collect::<Vec<_>>(), noise.moment_level * (density * step).sqrt());
         }
     }
     if noise.moment == MomentKind::OrnsteinUhlenbeck {
-        let states: Vec<State> = time.iter().map(|t| decaying(a, noise.moment_correlation, t - time[0])).collect();
+        let states: Vec<State> = time.iter().map(|t| decaying(a, noise.moment_correlation_time, t - time[0])).collect();
         source(&states, noise.moment_level);
     }
     for (i, &(row, heading)) in readings.iter().enumerate() {
         for (j, &(other, other_heading)) in readings.iter().enumerate() {
             if heading && other_heading {
                 let apart = (time[row] - time[other]).abs();
-                let alike = match noise.heading_correlation {
+                let alike = match noise.heading_correlation_time {
                     Some(correlation) => (-apart / correlation).exp(),
                     None => f64::from(u8::from(i == j)),
                 };
@@ -163,7 +163,7 @@ fn decaying(a: f64, correlation: f64, s: f64) -> State {
 #[test]
 fn the_filter_is_the_dense_gaussian() {
     let (plain, gyro) = (published(), with_gyro());
-    let coloured = |noise: NoiseModel| NoiseModel { heading_correlation: Some(3.0), ..noise };
+    let coloured = |noise: NoiseModel| NoiseModel { heading_correlation_time: Some(3.0), ..noise };
     let steered = |noise: NoiseModel| NoiseModel { rudder_sd: from_deg(0.7), ..noise };
     let rated = |noise: NoiseModel| NoiseModel { yaw_rate_sd: Some(2e-3), ..noise };
     let white = noise(MomentKind::White, 3e-4, 1.0);
@@ -201,13 +201,13 @@ fn even_rows_settle() {
     let place = NoiseVector { moment: MomentKind::Walk, log, ..NoiseVector::default() };
     let parameters = place.parameters(0.06);
     let filter = whitener(&schedule, &parameters, [0.0; 2]);
-    assert_eq!(schedule.spans.len(), 1);
+    assert_eq!(schedule.intervals.len(), 1);
     let mut settled = track.heading.clone();
     filter.apply(&mut [&mut settled]);
     // Steps that count as different kinds are computed one by one.
     let mut apart = schedule.clone();
     for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
-        apart.spans.push(schedule.spans[0].clone());
+        apart.intervals.push(schedule.intervals[0].clone());
         *reading = Reading::new(Some(k), reading.sensor());
     }
     let mut stepwise = track.heading.clone();

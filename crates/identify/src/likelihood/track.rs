@@ -29,13 +29,13 @@ pub struct Track {
     /// Corners of the rudder between rows, in order.
     corners: Vec<CornerAfterRow>,
     /// Rows that have a heading, in order.
-    pub observed: Vec<usize>,
-    /// Heading of the observed rows, rad.
+    pub heading_rows: Vec<usize>,
+    /// Heading of these rows, rad.
     pub heading: Vec<f64>,
     /// Rows with a used yaw rate, in order.
-    pub observed_rates: Vec<usize>,
+    pub yaw_rate_rows: Vec<usize>,
     /// Yaw rate of these rows, rad/s.
-    pub rates: Vec<f64>,
+    pub yaw_rates: Vec<f64>,
 }
 
 /// Interval between two rows.
@@ -69,7 +69,7 @@ pub struct TrackStep {
     /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
     /// Corner of the rudder within the step; `None` for a rudder that is linear over the step.
-    pub bend: Option<RudderCorner>,
+    pub corner: Option<RudderCorner>,
 }
 
 /// Change of the rudder rate between two rows.
@@ -115,50 +115,50 @@ pub fn is_backward(inverse_T: f64) -> bool {
 }
 
 impl Track {
-    /// Track of the rows with headings of a trial; excitation is not checked.
+    /// Track of a trial from its first to its last row with a heading; excitation is not checked.
     pub fn new(trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
         let heading = &trial.heading()[first..=last];
-        let observed: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
-        let heading = observed.iter().map(|&row| heading[row]).collect();
+        let heading_rows: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
+        let heading = heading_rows.iter().map(|&row| heading[row]).collect();
         let time = trial.time();
         let [times, rudder] = [time, trial.rudder()].map(|column| column[first..=last].to_vec());
-        let mut track = Self::from_rows(times, rudder, observed, heading);
+        let mut track = Self::from_rows(times, rudder, heading_rows, heading);
         for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row)) {
             let row = corner.row - first;
-            track.intervals[row].rudder_rate = corner.before;
-            let (after, rudder_rate) = (corner.time - time[corner.row], corner.after);
+            track.intervals[row].rudder_rate = corner.rate_before;
+            let (after, rudder_rate) = (corner.time - time[corner.row], corner.rate_after);
             track.corners.push(CornerAfterRow { row, after, rudder_rate });
         }
         track
     }
 
-    fn from_rows(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
+    fn from_rows(time: Vec<f64>, rudder: Vec<f64>, heading_rows: Vec<usize>, heading: Vec<f64>) -> Self {
         let interval = |(t, delta): (&[f64], &[f64])| {
             let duration = t[1] - t[0];
             Interval { duration, rudder_rate: (delta[1] - delta[0]) / duration }
         };
         let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
-        let (corners, observed_rates, rates) = (Vec::new(), Vec::new(), Vec::new());
-        Self { time, rudder, intervals, corners, observed, heading, observed_rates, rates }
+        let (corners, yaw_rate_rows, yaw_rates) = (Vec::new(), Vec::new(), Vec::new());
+        Self { time, rudder, intervals, corners, heading_rows, heading, yaw_rate_rows, yaw_rates }
     }
 
     /// Track with the yaw rates of the trial; without `rates` they are left out.
     pub fn with_rates(mut self, rates: Option<&[f64]>, trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let rates = rates.map_or(&[][..], |rates| &rates[first..][..self.time.len()]);
-        self.observed_rates = (0..rates.len()).filter(|&row| rates[row].is_finite()).collect();
-        self.rates = self.observed_rates.iter().map(|&row| rates[row]).collect();
+        self.yaw_rate_rows = (0..rates.len()).filter(|&row| rates[row].is_finite()).collect();
+        self.yaw_rates = self.yaw_rate_rows.iter().map(|&row| rates[row]).collect();
         self
     }
 
     /// Track without the headings of the given rows.
     pub fn without_headings(&self, headings: &[usize]) -> Self {
         let mut less = self.clone();
-        less.observed.retain(|row| !headings.contains(row));
+        less.heading_rows.retain(|row| !headings.contains(row));
         less.heading = self
-            .observed
+            .heading_rows
             .iter()
             .zip(&self.heading)
             .filter(|(row, _)| !headings.contains(row))
@@ -171,7 +171,7 @@ impl Track {
     /// rudder between them is linear, so its corners are cut.
     pub fn thinned(&self, rows: usize) -> Self {
         let every = (self.len() / rows).max(1);
-        let kept = || self.observed.iter().step_by(every);
+        let kept = || self.heading_rows.iter().step_by(every);
         let column = |values: &[f64]| kept().map(|&row| values[row]).collect::<Vec<f64>>();
         let heading: Vec<f64> = self.heading.iter().copied().step_by(every).collect();
         Self::from_rows(column(&self.time), column(&self.rudder), (0..heading.len()).collect(), heading)
@@ -192,7 +192,7 @@ impl Track {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
-    /// Steps away from the anchor, which is the last row if `backward`.
+    /// Steps between successive rows, away from the anchor, which is the last row if `backward`.
     #[inline(always)]
     pub fn steps(&self, backward: bool) -> impl Iterator<Item = TrackStep> {
         let (rows, count) = (self.intervals.len(), self.corners.len());
@@ -203,19 +203,20 @@ impl Track {
         (0..rows).map(move |k| {
             let row = if backward { rows - 1 - k } else { k };
             let Interval { duration, rudder_rate } = self.intervals[row];
-            let corner = next.filter(|corner| corner.row == row);
-            if corner.is_some() {
+            let corner_after_row = next.filter(|corner| corner.row == row);
+            if corner_after_row.is_some() {
                 passed += 1;
                 next = corner_at(passed);
             }
             if backward {
-                let bend = corner.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
-                let rudder_rate = corner.map_or(rudder_rate, |corner| corner.rudder_rate);
-                TrackStep { from_row: row + 1, to_row: row, duration: -duration, rudder_rate, bend }
+                let corner =
+                    corner_after_row.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
+                let rudder_rate = corner_after_row.map_or(rudder_rate, |corner| corner.rudder_rate);
+                TrackStep { from_row: row + 1, to_row: row, duration: -duration, rudder_rate, corner }
             } else {
-                let bend =
-                    corner.map(|c| RudderCorner { remaining: duration - c.after, change: c.rudder_rate - rudder_rate });
-                TrackStep { from_row: row, to_row: row + 1, duration, rudder_rate, bend }
+                let corner = corner_after_row
+                    .map(|c| RudderCorner { remaining: duration - c.after, change: c.rudder_rate - rudder_rate });
+                TrackStep { from_row: row, to_row: row + 1, duration, rudder_rate, corner }
             }
         })
     }
@@ -238,7 +239,7 @@ impl Track {
             column[anchor] = 0.0;
         }
         let (f, g, h) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
-        if self.observed_rates.is_empty() {
+        if self.yaw_rate_rows.is_empty() {
             self.motions(inverse_T, backward, |row, heading, _| {
                 [f[row], g[row], h[row], _] = heading;
             });
@@ -253,11 +254,11 @@ impl Track {
                 [rates.homogeneous[row], rates.rudder[row], rates.constant[row], _] = rate;
             });
             for column in [&mut rates.homogeneous, &mut rates.rudder, &mut rates.constant] {
-                keep(&self.observed_rates, column);
+                keep(&self.yaw_rate_rows, column);
             }
         }
         for column in [homogeneous, rudder, constant] {
-            keep(&self.observed, column);
+            keep(&self.heading_rows, column);
         }
     }
 
@@ -267,7 +268,7 @@ impl Track {
     fn motions(&self, inverse_T: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
             if durations_differ(step.h, duration) {
                 step = Transition::new(inverse_T, duration);
             }
@@ -278,8 +279,8 @@ impl Track {
                 heading[motion] += step.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = step.decay * yaw_rate[motion] + of_rate[motion];
             }
-            if let Some(bend) = bend {
-                let [more_heading, more_rate] = bend.response(inverse_T);
+            if let Some(corner) = corner {
+                let [more_heading, more_rate] = corner.response(inverse_T);
                 heading[1] += more_heading;
                 yaw_rate[1] += more_rate;
             }
@@ -293,7 +294,7 @@ impl Track {
         out[self.anchor_row(is_backward(inverse_T))] = 0.0;
         let column = &mut out[..self.time.len()];
         self.tangents(inverse_T, coefficients, |row, by_heading| column[row] = by_heading);
-        keep(&self.observed, out);
+        keep(&self.heading_rows, out);
     }
 
     /// Visits ∂ψ/∂a at every row but the anchor.
@@ -304,7 +305,7 @@ impl Track {
         // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
             if durations_differ(step.value.h, duration) {
                 step = TangentTransition::new(inverse_T, duration);
             }
@@ -318,7 +319,7 @@ impl Track {
                 heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
-            if let Some(RudderCorner { remaining, change }) = bend {
+            if let Some(RudderCorner { remaining, change }) = corner {
                 let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_T, remaining);
                 let change = coefficients.K_over_T * change;
                 for (motion, part) in [by_inverse_T.phi3, value.phi3].into_iter().enumerate() {
@@ -356,14 +357,14 @@ impl Track {
         let mut state = coefficients.anchor;
         visit(self.anchor_row(backward), state);
         let mut step = Transition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate, bend } in self.steps(backward) {
+        for TrackStep { from_row, to_row, duration, rudder_rate, corner } in self.steps(backward) {
             if durations_differ(step.h, duration) {
                 step = Transition::new(inverse_T, duration);
             }
             let u0 = coefficients.K_over_T * self.rudder[from_row] + coefficients.offset;
             state = step.advance(state, u0, coefficients.K_over_T * rudder_rate);
-            if let Some(bend) = bend {
-                let [heading, yaw_rate] = bend.response(inverse_T);
+            if let Some(corner) = corner {
+                let [heading, yaw_rate] = corner.response(inverse_T);
                 state.heading += coefficients.K_over_T * heading;
                 state.yaw_rate += coefficients.K_over_T * yaw_rate;
             }

@@ -30,18 +30,18 @@ type Small = [[f64; 3]; 3];
 
 /// Transition and process noise between two readings: the pieces of the rudder in order, and the decay of the compass
 /// error over the whole time.
-pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span: &ReadingInterval) -> Step<N> {
-    let mut whole = match parameters.rudder {
-        None => undisturbed(parameters, span.duration()),
+pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, interval: &ReadingInterval) -> Step<N> {
+    let mut whole = match parameters.rudder_error_sd {
+        None => undisturbed(parameters, interval.duration()),
         Some(size) => {
             let piece = |&duration: &f64| with_rudder(undisturbed(parameters, duration), parameters, size, duration);
-            let mut pieces = span.pieces.iter().map(piece);
+            let mut pieces = interval.pieces.iter().map(piece);
             let first = pieces.next().unwrap_or(Step { transition: identity(), process_noise: [[0.0; N]; N] });
             pieces.fold(first, |before, piece| before.followed_by(&piece))
         }
     };
-    if let (Some(place), Some(rate)) = (parameters.compass_state(), parameters.compass_rate) {
-        let decay = (-rate * span.duration()).exp();
+    if let (Some(place), Some(inverse_time)) = (parameters.compass_state(), parameters.compass_inverse_time) {
+        let decay = (-inverse_time * interval.duration()).exp();
         whole.transition[place][place] = decay;
         whole.process_noise[place][place] = 1.0 - decay * decay;
     }
@@ -50,8 +50,8 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, span
 
 /// Step of ship and moment without rudder error: a short step F, Q, doubled by F F and Q + F Q Fᵀ up to `duration`, s.
 fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> Step<N> {
-    let rates = parameters.inverse_T.abs() + parameters.rate;
-    let doublings = (rates * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);
+    let inverse_times = parameters.inverse_T.abs() + parameters.moment_inverse_time;
+    let doublings = (inverse_times * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, duration / doublings.exp2());
     for _ in 0..doublings as usize {
         q = sum(&q, &congruence(&f, &q));
@@ -91,7 +91,7 @@ fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, 
 /// Transition and covariance over a step that is short against T and τ. Time is counted in steps, so that the series
 /// has no units: z = (ψ, r h, m h²).
 fn short(parameters: &NoiseParameters, h: f64) -> (Small, Small) {
-    let (x, y) = (parameters.inverse_T * h, parameters.rate * h);
+    let (x, y) = (parameters.inverse_T * h, parameters.moment_inverse_time * h);
     // Coefficients of the motion after an impulse on r, and on m: (ψ, r, m) as polynomials of time.
     let mut of_rate = [[0.0; TERMS]; 3];
     let mut of_moment = [[0.0; TERMS]; 3];
@@ -111,11 +111,12 @@ fn short(parameters: &NoiseParameters, h: f64) -> (Small, Small) {
 
     let (impulse, density) = match parameters.moment {
         MomentKind::None => return (transition, [[0.0; 3]; 3]),
-        MomentKind::White => (&of_rate, parameters.level * parameters.level * h.powi(3)),
-        MomentKind::Walk => (&of_moment, parameters.level * parameters.level * h.powi(5)),
-        MomentKind::OrnsteinUhlenbeck => {
-            (&of_moment, parameters.level * parameters.level * parameters.rate * (2.0 * h.powi(5)))
-        }
+        MomentKind::White => (&of_rate, parameters.moment_level * parameters.moment_level * h.powi(3)),
+        MomentKind::Walk => (&of_moment, parameters.moment_level * parameters.moment_level * h.powi(5)),
+        MomentKind::OrnsteinUhlenbeck => (
+            &of_moment,
+            parameters.moment_level * parameters.moment_level * parameters.moment_inverse_time * (2.0 * h.powi(5)),
+        ),
     };
     let mut added = [[0.0; 3]; 3];
     for (s, weight) in NODES {

@@ -80,7 +80,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
                 };
                 let change = (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE);
                 // A tied compass error shrinks as its entry grows.
-                let tied = entry == RUDDER_INDEX && record.declared.is_some();
+                let tied = entry == RUDDER_INDEX && record.declared_rudder_sd.is_some();
                 if tied { change + motions[number] * 2.0 } else { change }
             })
             .collect();
@@ -88,7 +88,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
         let information = maximum.derivatives.information.view((first, first), (count, count)).into_owned();
         let ridge = DMatrix::from_fn(count, count, |i, j| if i == j { 1e-9 * information[(i, i)] + 1e-9 } else { 0.0 });
         let factor = (information + ridge).cholesky();
-        let is_tied = vector.has_rudder_error && record.declared.is_some();
+        let is_tied = vector.has_rudder_error && record.declared_rudder_sd.is_some();
         for (variance, direction) in variance.iter_mut().zip(&directions) {
             let seen = inverse * direction;
             let size = direction.dot(&seen);
@@ -96,7 +96,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
             let by_size = change(&(motions[number] * -2.0));
             let mut slopes = DVector::from_iterator(count, by_entry.iter().map(change));
             if !is_tied {
-                slopes -= &maximum.derivatives.totals[number] * (by_size / (2.0 * readings));
+                slopes -= &maximum.derivatives.log_variance_slopes[number] * (by_size / (2.0 * readings));
                 *variance += by_size * by_size / (2.0 * readings);
             }
             *variance += factor.as_ref().map_or(0.0, |factor| slopes.dot(&factor.solve(&slopes)));
@@ -165,7 +165,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     Ok(Estimate {
         response,
         uncertainty,
-        robust: Some(robust_covariance),
+        robust_covariance: Some(robust_covariance),
         stop: match (is_at_bound, maximum.has_converged) {
             (true, _) => StopReason::RangeLimit,
             (false, true) => StopReason::Converged,
@@ -213,7 +213,7 @@ fn noise_diagnostics(noise: &NoiseModel, K_over_T: f64, chosen: &ChosenLaw) -> V
         ("left_out", count(|suspects| suspects.spikes.len())),
         ("jumps", count(|suspects| suspects.jumps.len())),
     ];
-    diagnostics.extend(noise.heading_correlation.map(|time| ("heading_correlation_s", time)));
+    diagnostics.extend(noise.heading_correlation_time.map(|time| ("heading_correlation_s", time)));
     diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
     match random_moment(noise, K_over_T) {
         RandomMoment::None => {}
@@ -228,14 +228,14 @@ fn noise_diagnostics(noise: &NoiseModel, K_over_T: f64, chosen: &ChosenLaw) -> V
         }
     }
     diagnostics.extend((noise.rudder_sd > 0.0).then(|| ("rudder_sd_deg", to_deg(noise.rudder_sd))));
-    let lowest = chosen.tried.iter().map(|(_, bic)| *bic).fold(f64::INFINITY, f64::min);
+    let lowest = chosen.bic_by_moment.iter().map(|(_, bic)| *bic).fold(f64::INFINITY, f64::min);
     for (kind, name) in [
         (MomentKind::None, "bic_none"),
         (MomentKind::White, "bic_white"),
         (MomentKind::Walk, "bic_walk"),
         (MomentKind::OrnsteinUhlenbeck, "bic_ornstein_uhlenbeck"),
     ] {
-        let fitted = chosen.tried.iter().filter(|(moment, _)| *moment == kind).map(|(_, bic)| *bic);
+        let fitted = chosen.bic_by_moment.iter().filter(|(moment, _)| *moment == kind).map(|(_, bic)| *bic);
         diagnostics.extend(fitted.min_by(f64::total_cmp).map(|bic| (name, bic - lowest)));
     }
     diagnostics
@@ -249,7 +249,7 @@ fn random_moment(noise: &NoiseModel, K_over_T: f64) -> RandomMoment {
         MomentKind::White => RandomMoment::White { rudder_rad_root_s: rudder },
         MomentKind::Walk => RandomMoment::Walk { rudder_rad_per_root_s: rudder },
         MomentKind::OrnsteinUhlenbeck => {
-            RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: rudder, correlation_s: noise.moment_correlation }
+            RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad: rudder, correlation_s: noise.moment_correlation_time }
         }
     }
 }
@@ -273,7 +273,7 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, K_over_T: f64) -> Option<War
     if noise.rudder_sd > 0.0 {
         parts.push(format!("an error of the recorded rudder of {:.3} deg", to_deg(noise.rudder_sd)));
     }
-    if let Some(time) = noise.heading_correlation {
+    if let Some(time) = noise.heading_correlation_time {
         let sd = to_deg(noise.heading_sd);
         parts.push(format!("a compass error of {sd:.3} deg that lasts about {time:.1} s"));
     }

@@ -14,7 +14,7 @@ use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS_INDEX, RUDDER_INDEX};
 use crate::likelihood::track::{Coefficients, MotionColumns, Track};
 use crate::output_error::{self, MAX_CONDITION, MIN_ROWS};
-use crate::replay::best_start;
+use crate::replay::best_initial_state;
 use crate::robust;
 use crate::samples::checked_track;
 use trial::noise_model::MomentKind;
@@ -56,7 +56,7 @@ pub(super) struct ChosenLaw {
     /// `true` if there are too many spikes to leave out.
     pub has_too_many_outliers: bool,
     /// Kind of moment and BIC of every fitted law, and of every moment without gain.
-    pub tried: Vec<(MomentKind, f64)>,
+    pub bic_by_moment: Vec<(MomentKind, f64)>,
     /// Number of evaluations of the likelihood, and of `output-error`.
     pub evaluations: usize,
     /// `true` if 1/T is at the edge of the range of `output-error`.
@@ -107,7 +107,7 @@ impl PreparedRecords {
         let first = first?;
         let gyro = settings.uses_yaw_rate
             && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.is_heading_integrated());
-        let declared_sd = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
+        let declared_sd = |trial: &Trial| trial.noise().rudder_sd.filter(|&sd| sd > 0.0);
         let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
         let records = tracks
@@ -138,20 +138,23 @@ impl PreparedRecords {
         let blank = |(record, ranges): (&Record, &Ranges)| {
             gyro_start(
                 ranges,
-                &NoiseVector { has_rudder_error: estimated || record.declared.is_some(), ..NoiseVector::default() },
+                &NoiseVector {
+                    has_rudder_error: estimated || record.declared_rudder_sd.is_some(),
+                    ..NoiseVector::default()
+                },
             )
         };
         let none: Vec<NoiseVector> = records.iter().zip(&ranges).map(blank).collect();
 
         let mut spent = evaluations;
-        let (mut all, mut tried) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
+        let (mut all, mut bic_by_moment) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
         // A jump is kept if it improves the likelihood enough under the selected noise.
         let suspected: usize = outliers.iter().map(|rows| rows.jumps.len()).sum();
         let mut kept = outliers;
         if let Some((_, maximum)) = all.first().filter(|_| suspected > 0) {
             keep_jumps(&mut records, &mut kept, &maximum.point);
             if records.iter().any(|record| !record.jumps.is_empty()) {
-                (all, tried) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
+                (all, bic_by_moment) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
             }
         }
         kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jumps.clone_from(&record.jumps));
@@ -163,7 +166,15 @@ impl PreparedRecords {
         let maxima: Vec<(f64, Maximum)> = all.into_iter().map(weigh).filter(|(share, _)| *share > MIN_WEIGHT).collect();
         let end = maxima[0].1.point.inverse_T;
         let is_at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
-        Ok(ChosenLaw { records, maxima, outliers: kept, has_too_many_outliers, tried, evaluations: spent, is_at_bound })
+        Ok(ChosenLaw {
+            records,
+            maxima,
+            outliers: kept,
+            has_too_many_outliers,
+            bic_by_moment,
+            evaluations: spent,
+            is_at_bound,
+        })
     }
 }
 
@@ -179,10 +190,10 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
     let free: Vec<f64> =
         track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - K_over_T * g - offset * h).collect();
     let without_spikes = |values: &[f64]| -> Vec<f64> {
-        let rows = track.observed.iter().zip(values);
+        let rows = track.heading_rows.iter().zip(values);
         rows.filter(|(row, _)| !excluded.contains(row)).map(|(_, &value)| value).collect()
     };
-    let start = best_start(&without_spikes(&free), &without_spikes(&columns.homogeneous));
+    let start = best_initial_state(&without_spikes(&free), &without_spikes(&columns.homogeneous));
     let motion = columns.homogeneous.iter().map(|column| start.heading + start.yaw_rate * column);
     free.iter().zip(motion).map(|(heading, motion)| heading - motion).collect()
 }
@@ -212,17 +223,17 @@ fn bic(records: &[Record], point: &Point) -> f64 {
             // The entry of a declared rudder error represents the size of the compass error, which all laws count.
             vector
                 .active_entries(record.has_gyro())
-                .filter(|&entry| entry != RUDDER_INDEX || record.declared.is_none())
+                .filter(|&entry| entry != RUDDER_INDEX || record.declared_rudder_sd.is_none())
                 .count()
         })
         .sum();
-    point.restricted + noise as f64 * (reading_count(records) as f64).ln()
+    point.restricted_deviance + noise as f64 * (reading_count(records) as f64).ln()
 }
 
 /// Fits of all noise laws, each with its BIC.
 type Ranked = Vec<(f64, Maximum)>;
 
-/// Fits every noise law that the settings allow, the lowest BIC first; also returns [`ChosenLaw::tried`].
+/// Fits every noise law that the settings allow, the lowest BIC first; also returns [`ChosenLaw::bic_by_moment`].
 fn fit_laws(
     records: &[Record],
     ranges: &[Ranges],
@@ -231,7 +242,8 @@ fn fit_laws(
     none: &[NoiseVector],
     evaluations: &mut usize,
 ) -> (Ranked, Vec<(MomentKind, f64)>) {
-    let mut search = Search { records, ranges, iterations: settings.iterations, evaluations: 0, unseen: Vec::new() };
+    let mut search =
+        Search { records, ranges, iterations: settings.iterations, evaluations: 0, moments_without_gain: Vec::new() };
     let mut all = fit_moments(&mut search, settings.moment.kinds(), a, none);
     let coloured_starts = coloured_compass_starts(&all, settings.compass);
     if settings.compass == CompassChoice::Coloured {
@@ -239,7 +251,7 @@ fn fit_laws(
     }
     for (a, vectors) in coloured_starts {
         let starts = search.entry_starts(a, &vectors, COMPASS_INDEX);
-        let start = search.best_start(&starts, |point| point.restricted);
+        let start = search.best_start(&starts, |point| point.restricted_deviance);
         all.extend(start.and_then(|start| search.highest(start)));
     }
     // Under the selected noise another 1/T may be better; under white instrument errors alone the start is already
@@ -253,8 +265,12 @@ fn fit_laws(
     }
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     *evaluations += search.evaluations;
-    let tried = all.iter().map(|(bic, maximum)| (maximum.point.vectors[0].moment, *bic)).chain(search.unseen).collect();
-    (all, tried)
+    let bic_by_moment = all
+        .iter()
+        .map(|(bic, maximum)| (maximum.point.vectors[0].moment, *bic))
+        .chain(search.moments_without_gain)
+        .collect();
+    (all, bic_by_moment)
 }
 
 impl Search<'_> {
@@ -276,35 +292,41 @@ fn fit_moments(search: &mut Search, kinds: &[MomentKind], a: f64, none: &[NoiseV
         let gusts =
             kinds.contains(&MomentKind::OrnsteinUhlenbeck) && matches!(kind, MomentKind::White | MomentKind::Walk);
         let plain = all.iter().find(|(_, maximum)| maximum.point.vectors[0].moment == MomentKind::None);
-        let random =
-            [&white, &walk].into_iter().flatten().map(|point: &Point| point.restricted).fold(f64::INFINITY, f64::min);
+        let random = [&white, &walk]
+            .into_iter()
+            .flatten()
+            .map(|point: &Point| point.restricted_deviance)
+            .fold(f64::INFINITY, f64::min);
         // Gusts lie between a white moment and a walk: without either, gusts are not fitted.
         let hopeless = kind == MomentKind::OrnsteinUhlenbeck
-            && plain.is_some_and(|(_, plain)| plain.point.restricted - random < MIN_GUST_GAIN);
+            && plain.is_some_and(|(_, plain)| plain.point.restricted_deviance - random < MIN_GUST_GAIN);
         if (!kinds.contains(&kind) && !gusts) || hopeless {
             continue;
         }
-        let restricted = |point: &Point| point.restricted;
+        let restricted = |point: &Point| point.restricted_deviance;
         let start = match kind {
             MomentKind::None if none[0].has_rudder_error => {
                 search.best_start(&search.entry_starts(a, &none, RUDDER_INDEX), restricted)
             }
             MomentKind::None => search.evaluate((a, none.clone())),
-            MomentKind::White | MomentKind::Walk => {
-                search.best_level(&search.level_starts(a, &none, kind), plain.map(|(_, plain)| plain.point.restricted))
-            }
+            MomentKind::White | MomentKind::Walk => search.best_level(
+                &search.level_starts(a, &none, kind),
+                plain.map(|(_, plain)| plain.point.restricted_deviance),
+            ),
             MomentKind::OrnsteinUhlenbeck => {
                 search.best_start(&search.gust_starts(white.as_ref(), walk.as_ref()), restricted)
             }
         };
         // A moment without gain at any size is absent; the BIC still counts its entries.
-        let is_unseen = |start: &Point| {
+        let is_without_gain = |start: &Point| {
             matches!(kind, MomentKind::White | MomentKind::Walk)
-                && plain.is_some_and(|(_, plain)| start.restricted > plain.point.restricted - MIN_MOMENT_GAIN)
+                && plain.is_some_and(|(_, plain)| {
+                    start.restricted_deviance > plain.point.restricted_deviance - MIN_MOMENT_GAIN
+                })
         };
-        if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_unseen)) {
+        if let Some((bic, _)) = plain.filter(|_| start.as_ref().is_some_and(is_without_gain)) {
             let entries = search.records.len() as f64;
-            search.unseen.push((kind, bic + entries * (reading_count(search.records) as f64).ln()));
+            search.moments_without_gain.push((kind, bic + entries * (reading_count(search.records) as f64).ln()));
             continue;
         }
         let fitted = start.and_then(|start| search.highest(start));
@@ -348,7 +370,8 @@ fn lowest(all: &[(f64, Maximum)]) -> Option<&(f64, Maximum)> {
     all.iter().min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Best of other values of 1/T, of both signs, under unchanged noise.
+/// Point with the lowest −2 log L on a grid of other values of 1/T, of both signs, under unchanged noise; `None` if no
+/// value gives a positive K/T and a finite likelihood.
 fn best_inverse_T(search: &mut Search, inverse_T: f64, vectors: &[NoiseVector]) -> Option<Point> {
     let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
     let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);

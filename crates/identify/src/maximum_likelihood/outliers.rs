@@ -57,7 +57,7 @@ pub(super) fn find_suspects(whole: &Track, residual: &[f64], excluded: &[usize])
     let (lowest, highest) = extremes(&whole.heading);
     // The range may include a sentinel.
     let floor = MIN_OUTLIER_SHARE * (highest - lowest).min(std::f64::consts::PI);
-    let rows = &whole.observed;
+    let rows = &whole.heading_rows;
     let mut kept: Vec<usize> = (0..residual.len()).collect();
     let max_spikes = (MAX_OUTLIER_SHARE * residual.len() as f64).ceil() as usize + 1;
     let mut sides = deviations(residual, &kept);

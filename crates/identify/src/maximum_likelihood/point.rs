@@ -35,7 +35,7 @@ pub(super) struct Record {
     pub jumps: Vec<usize>,
     /// Declared standard deviation of the rudder error, rad. It fixes the rudder error of a noise vector, whose entry
     /// then represents the size of the compass error. `None` if it is not declared or not used.
-    pub declared: Option<f64>,
+    pub declared_rudder_sd: Option<f64>,
     /// Columns of the last 1/T: the filters of many noise laws share them.
     last_columns: RefCell<Option<Rc<RecordColumns>>>,
     /// Memory for the whitened rows of two filters.
@@ -93,13 +93,13 @@ pub(super) struct RecordAtPoint {
     /// Whitened columns.
     pub white: WhitenedColumns,
     /// Whitened sensitivity of the readings to 1/T, projected off the nuisance columns.
-    pub by_time: Vec<f64>,
+    pub by_inverse_T: Vec<f64>,
 }
 
 /// Start of a search: 1/T (1/s), and the noise vector of every record.
 pub(super) type Start = (f64, Vec<NoiseVector>);
 
-/// Best fit for one 1/T and one noise law of every record.
+/// Best fit for a given 1/T and given noise of every record.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
     /// 1/T, 1/s.
@@ -109,7 +109,7 @@ pub(super) struct Point {
     /// −2 log L.
     pub deviance: f64,
     /// −2 log of the restricted likelihood.
-    pub restricted: f64,
+    pub restricted_deviance: f64,
     /// b = K/T, 1/s².
     pub K_over_T: f64,
     /// b δ_r, rad/s².
@@ -119,13 +119,13 @@ pub(super) struct Point {
 }
 
 impl Record {
-    pub fn new(track: Track, by_row: bool, declared: Option<f64>) -> Self {
+    pub fn new(track: Track, by_row: bool, declared_rudder_sd: Option<f64>) -> Self {
         let schedule = Schedule::new(&track, by_row);
         Self {
             track,
             schedule,
             jumps: Vec::new(),
-            declared,
+            declared_rudder_sd,
             last_columns: RefCell::default(),
             white: RefCell::default(),
         }
@@ -138,12 +138,12 @@ impl Record {
 
     /// `true` if the yaw rate is among the readings.
     pub fn has_gyro(&self) -> bool {
-        !self.track.rates.is_empty()
+        !self.track.yaw_rates.is_empty()
     }
 
     /// Declared rudder error of a noise vector, rad; `None` without a declared or a fitted rudder error.
     pub fn declared_rudder_error(&self, vector: &NoiseVector) -> Option<f64> {
-        self.declared.filter(|_| vector.has_rudder_error)
+        self.declared_rudder_sd.filter(|_| vector.has_rudder_error)
     }
 
     /// Number of unknowns of the record alone: initial state and jumps.
@@ -153,8 +153,8 @@ impl Record {
 
     /// Regressor of a compass jump: 1 for headings from row `jump` on, 0 before and for yaw rates.
     fn step_at(&self, jump: usize) -> Vec<f64> {
-        let heading: Vec<f64> = self.track.observed.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
-        self.schedule.stacked(&heading, &vec![0.0; self.track.rates.len()])
+        let heading: Vec<f64> = self.track.heading_rows.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
+        self.schedule.stacked(&heading, &vec![0.0; self.track.yaw_rates.len()])
     }
 
     /// Columns of a ship with this 1/T; the columns of the last 1/T are cached.
@@ -168,8 +168,8 @@ impl Record {
         columns
     }
 
-    /// Columns of ships, whitened under noise whose filter may use another 1/T, for every pair of 1/T and noise. `None`
-    /// if a column is not finite. Two filters advance side by side.
+    /// Whitened columns for every pair of 1/T and noise; the filter of the noise may use another 1/T. `None` for a pair
+    /// with a column that is not finite. Two filters advance side by side.
     fn whitened(&self, cases: &[(f64, NoiseParameters)]) -> Vec<Option<WhitenedColumns>> {
         let whitened_pair = |pair: &[(f64, NoiseParameters)]| {
             let case = |(inverse_T, noise): &(f64, NoiseParameters)| {
@@ -192,7 +192,7 @@ impl Record {
     }
 
     /// Products of the whitened sensitivities to (1/T, b, b δ_r) at given coefficients, with the initial state
-    /// eliminated; divided by σ² they are the information of the motion.
+    /// eliminated; divided by σ² they are the information of the motion. `None` if a product is not finite.
     pub fn information(
         &self,
         inverse_T: f64,
@@ -200,8 +200,8 @@ impl Record {
         coefficients: &Coefficients,
     ) -> Option<Matrix3<f64>> {
         let white = self.whitened(&[(inverse_T, vector.parameters(inverse_T))]).pop()??;
-        let by_time = white.by_time(coefficients);
-        let products = white.motion(&by_time);
+        let by_inverse_T = white.by_inverse_T(coefficients);
+        let products = white.motion(&by_inverse_T);
         products.iter().all(|value| value.is_finite()).then_some(products)
     }
 }
@@ -229,10 +229,10 @@ fn instrument_rows(
 impl RecordColumns {
     fn new(record: &Record, inverse_T: f64) -> Self {
         let Record { track, schedule, jumps, .. } = record;
-        let (mut motion, mut by_time) = (MotionColumns::default(), MotionColumns::default());
-        fill_with_tangents(track, inverse_T, &mut motion, &mut by_time);
-        let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_time.headings());
-        let mut rates = instrument_rows(0.0, motion.rates.all(), &track.rates, by_time.rates.all());
+        let (mut motion, mut by_inverse_T) = (MotionColumns::default(), MotionColumns::default());
+        fill_with_tangents(track, inverse_T, &mut motion, &mut by_inverse_T);
+        let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_inverse_T.headings());
+        let mut rates = instrument_rows(0.0, motion.rates.all(), &track.yaw_rates, by_inverse_T.rates.all());
         let row = |reading: &Reading| if reading.sensor() == COMPASS_SENSOR { headings.next() } else { rates.next() };
         let mut rows = Vec::with_capacity(record.len());
         rows.extend(schedule.readings.iter().filter_map(row));
@@ -281,16 +281,17 @@ impl WhitenedColumns {
     }
 
     /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
-    fn by_time(&self, Coefficients { anchor, K_over_T, offset }: &Coefficients) -> Vec<f64> {
+    fn by_inverse_T(&self, Coefficients { anchor, K_over_T, offset }: &Coefficients) -> Vec<f64> {
         let [by_yaw_rate, by_rudder, by_constant] = &self.tangents;
         let steered = by_rudder.iter().zip(by_constant).map(|(g, h)| K_over_T * g + offset * h);
         by_yaw_rate.iter().zip(steered).map(|(f, steered)| anchor.yaw_rate * f + steered).collect()
     }
 
-    /// Information XᵀX of (1/T, b, b δ_r), from their whitened and projected sensitivities; that to 1/T is `by_time`.
-    fn motion(&self, by_time: &[f64]) -> Matrix3<f64> {
+    /// Information XᵀX of (1/T, b, b δ_r), from their whitened and projected sensitivities; that to 1/T is
+    /// `by_inverse_T`.
+    fn motion(&self, by_inverse_T: &[f64]) -> Matrix3<f64> {
         let [rudder, constant, _] = &self.projected;
-        Matrix3::from(gram([by_time, rudder, constant]))
+        Matrix3::from(gram([by_inverse_T, rudder, constant]))
     }
 
     /// Whitened readings minus b G and b δ_r H, all projected off the nuisance columns.
@@ -325,13 +326,13 @@ fn weight(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: u
         products: gram([rudder, constant, measured]),
         readings,
         freedom: readings - fitted,
-        tied: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
+        compass_sd_per_gain: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
     }
 }
 
 impl RecordAtPoint {
-    /// Contributions of a record at given steering, one for every noise vector, whose filter may use another 1/T than
-    /// the ship. `None` if one is not finite.
+    /// Contributions of a record for the steering (b, b δ_r), for every noise vector with the 1/T of its filter, which
+    /// may differ from that of the ship. `readings` is the number over all records. `None` if any is not finite.
     pub fn under(
         record: &Record,
         inverse_T: f64,
@@ -358,15 +359,16 @@ impl RecordAtPoint {
         variance: f64,
     ) -> Option<Self> {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
-        let deviance = weight.readings * constant + weight.rss(K_over_T, offset) / variance + white.filter.log_variance;
+        let deviance =
+            weight.readings * constant + weight.rss(K_over_T, offset) / variance + white.filter.log_determinant;
         let anchor = white.start(K_over_T, offset)?;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         let log_determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
-        let by_time = white.by_time(&Coefficients { anchor, K_over_T, offset });
-        let (motion, innovations) = (white.motion(&by_time), white.residual(K_over_T, offset));
+        let by_inverse_T = white.by_inverse_T(&Coefficients { anchor, K_over_T, offset });
+        let (motion, innovations) = (white.motion(&by_inverse_T), white.residual(K_over_T, offset));
         let readings = record.len();
-        Some(Self { variance, readings, anchor, innovations, deviance, log_determinant, motion, white, by_time })
+        Some(Self { variance, readings, anchor, innovations, deviance, log_determinant, motion, white, by_inverse_T })
     }
 }
 
@@ -375,7 +377,8 @@ pub(super) fn reading_count(records: &[Record]) -> usize {
     records.iter().map(Record::len).sum()
 }
 
-/// Best fits, each for a 1/T and a noise vector of every record. `None` for one that is not a ship or not finite.
+/// Best fit for every start: a 1/T and a noise vector of every record. `None` for a fit whose K/T is not positive or
+/// whose likelihood is not finite.
 pub(super) fn evaluate(records: &[Record], starts: &[Start]) -> Vec<Option<Point>> {
     let whitened = |(number, record): (usize, &Record)| {
         let cases = starts.iter().map(|(a, vectors)| (*a, vectors[number].parameters(*a)));
@@ -406,13 +409,13 @@ fn point(records: &[Record], (inverse_T, vectors): &Start, columns: Vec<Whitened
     let motion: Matrix3<f64> = parts.iter().map(|part| part.motion / part.variance).sum();
     let determinant = parts.iter().map(|part| part.log_determinant).sum::<f64>() + motion.determinant().ln();
     let [K_over_T, offset] = steering;
-    let restricted = deviance + determinant;
-    let ship = K_over_T > 0.0 && restricted.is_finite();
+    let restricted_deviance = deviance + determinant;
+    let ship = K_over_T > 0.0 && restricted_deviance.is_finite();
     ship.then(|| Point {
         inverse_T: *inverse_T,
         vectors: vectors.clone(),
         deviance,
-        restricted,
+        restricted_deviance,
         K_over_T,
         offset,
         parts,

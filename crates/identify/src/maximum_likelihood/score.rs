@@ -10,8 +10,8 @@ use trial::noise_model::MomentKind;
 
 use super::point::{Point, Record, RecordAtPoint, SHARED_PARAMETERS, reading_count};
 
-/// Step of a logarithm, and of 1/T as a share of itself and of one over the length of the record: wide enough for the
-/// digits of the likelihood, and far below the uncertainty of the noise.
+/// Step of a logarithm, and of 1/T as a share of |1/T| plus the reciprocal of the duration of the record: wide enough
+/// for the digits of the likelihood, and far below the uncertainty of the noise.
 const DIFFERENCE: f64 = 1e-4;
 
 /// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the noise vectors, record by
@@ -19,14 +19,14 @@ const DIFFERENCE: f64 = 1e-4;
 pub(super) struct ScoreAndInformation {
     /// Derivative of −log L with respect to 1/T, and of the restricted likelihood with respect to the entries; zero for
     /// b and b δ_r, which are at their optimum.
-    pub score: DVector<f64>,
+    pub gradient: DVector<f64>,
     /// Fisher information, the sizes of the compass errors eliminated.
     pub information: DMatrix<f64>,
     /// Derivatives of log L through the response with respect to (1/T, b, b δ_r), times the variance of the compass
     /// error: one column by reading for each parameter, for every record.
     pub scores: Vec<[Vec<f64>; 3]>,
     /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero if the compass error is tied.
-    pub totals: Vec<DVector<f64>>,
+    pub log_variance_slopes: Vec<DVector<f64>>,
 }
 
 /// Score and information at a point; `None` if they are not finite.
@@ -35,17 +35,17 @@ pub(super) fn score_and_information(records: &[Record], point: &Point) -> Option
     let counts: Vec<usize> = records.iter().zip(&point.vectors).map(count).collect();
     let unknowns = SHARED_PARAMETERS + counts.iter().sum::<usize>();
     let mut all = ScoreAndInformation {
-        score: DVector::zeros(unknowns),
+        gradient: DVector::zeros(unknowns),
         information: DMatrix::zeros(unknowns, unknowns),
         scores: Vec::with_capacity(records.len()),
-        totals: Vec::with_capacity(records.len()),
+        log_variance_slopes: Vec::with_capacity(records.len()),
     };
     let mut first = SHARED_PARAMETERS;
     for (number, count) in counts.into_iter().enumerate() {
         all.add(records, point, number, first..first + count)?;
         first += count;
     }
-    let finite = all.score.iter().chain(all.information.iter()).all(|value: &f64| value.is_finite());
+    let finite = all.gradient.iter().chain(all.information.iter()).all(|value: &f64| value.is_finite());
     finite.then_some(all)
 }
 
@@ -54,7 +54,7 @@ struct Slope {
     innovation: Vec<f64>,
     log_variance: Vec<f64>,
     /// Derivatives of −log L and of the restricted likelihood.
-    score: [f64; 2],
+    gradient: [f64; 2],
     /// Derivative of the logarithm of the variance of the compass error, if it is tied to an entry.
     tied: f64,
 }
@@ -70,8 +70,8 @@ impl Slope {
         let moved = motion - here.motion / here.variance + there.motion / there.variance;
         let determinant =
             there.log_determinant - here.log_determinant + (moved.determinant() / motion.determinant()).ln();
-        let score = [deviance, deviance + determinant].map(|change| 0.5 * change / by);
-        Self { innovation, log_variance, score, tied: (there.variance / here.variance).ln() / by }
+        let gradient = [deviance, deviance + determinant].map(|change| 0.5 * change / by);
+        Self { innovation, log_variance, gradient, tied: (there.variance / here.variance).ln() / by }
     }
 }
 
@@ -97,7 +97,7 @@ impl ScoreAndInformation {
         let none = || vec![0.0; part.readings];
         let mut slopes = vec![match by_ship {
             Some(by) => Slope::new(part, &there.next()?, by, &motion),
-            None => Slope { innovation: none(), log_variance: none(), score: [0.0; 2], tied: 0.0 },
+            None => Slope { innovation: none(), log_variance: none(), gradient: [0.0; 2], tied: 0.0 },
         }];
         for (entry, there) in active.into_iter().zip(there) {
             let mut slope = Slope::new(part, &there, DIFFERENCE, &motion);
@@ -108,8 +108,8 @@ impl ScoreAndInformation {
             slopes.push(slope);
         }
         let at: Vec<usize> = std::iter::once(0).chain(entries).collect();
-        self.score[0] += slopes[0].score[0];
-        slopes.iter().zip(&at).skip(1).for_each(|(slope, &at)| self.score[at] += slope.score[1]);
+        self.gradient[0] += slopes[0].gradient[0];
+        slopes.iter().zip(&at).skip(1).for_each(|(slope, &at)| self.gradient[at] += slope.gradient[1]);
         let sum = |slope: &Slope| if is_tied { 0.0 } else { slope.log_variance.iter().sum::<f64>() };
         let totals: Vec<f64> = slopes.iter().map(sum).collect();
         for (i, left) in slopes.iter().enumerate() {
@@ -118,7 +118,7 @@ impl ScoreAndInformation {
                 self.information[(at[i], at[j])] += 0.5 * (product - totals[i] * totals[j] / part.readings as f64);
             }
         }
-        self.totals.push(DVector::from_row_slice(&totals[1..]));
+        self.log_variance_slopes.push(DVector::from_row_slice(&totals[1..]));
         self.add_motion(part, slopes.into_iter().map(|slope| slope.innovation).collect(), &at);
         Some(())
     }
@@ -127,8 +127,8 @@ impl ScoreAndInformation {
     /// motion.
     fn add_motion(&mut self, part: &RecordAtPoint, mut columns: Vec<Vec<f64>>, at: &[usize]) {
         let per = part.variance.recip();
-        self.score[0] -= dot(&part.innovations, &part.by_time) * per;
-        columns[0].iter_mut().zip(&part.by_time).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
+        self.gradient[0] -= dot(&part.innovations, &part.by_inverse_T) * per;
+        columns[0].iter_mut().zip(&part.by_inverse_T).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
         let minus = |column: &[f64]| column.iter().map(|x| -x).collect::<Vec<f64>>();
         let [rudder, constant, _] = &part.white.projected;
         columns.extend([minus(rudder), minus(constant)]);
@@ -143,6 +143,6 @@ impl ScoreAndInformation {
             }
         }
         let times = |column: &[f64]| column.iter().zip(&part.innovations).map(|(x, nu)| x * nu).collect::<Vec<f64>>();
-        self.scores.push([times(&part.by_time), times(rudder), times(constant)]);
+        self.scores.push([times(&part.by_inverse_T), times(rudder), times(constant)]);
     }
 }

@@ -1,5 +1,6 @@
-//! Maximum likelihood over 1/T and the noise: Fisher scoring with exact slopes from starts over all magnitudes.
-//! Sources: Fisher scoring and BFGS steps as in Nocedal and Wright (2006), Numerical Optimization, chapter 6.
+//! Maximum likelihood over 1/T and the noise: Fisher scoring with the derivatives of [`super::score`], from starts over
+//! all magnitudes. Sources: Fisher scoring and BFGS steps as in Nocedal and Wright (2006), Numerical Optimization,
+//! chapter 6.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,7 +14,8 @@ use trial::noise_model::MomentKind;
 /// standard deviation from the maximum.
 const MIN_DECREASE: f64 = 2e-4;
 
-/// The same for a search over 1/T alone, which must be as exact as `output-error`.
+/// Predicted decrease of −2 log L at which a search over 1/T alone has converged; it must be as exact as
+/// `output-error`.
 const MIN_DECREASE_ALONE: f64 = 1e-12;
 
 /// Maximum increase of −2 log of the restricted likelihood in a step.
@@ -36,7 +38,7 @@ const MAX_LOG_STEP: f64 = 2.5;
 pub(super) struct Ranges {
     /// Duration of the record, s.
     pub duration: f64,
-    /// Usual time between the readings of the record, s.
+    /// Mean time between the headings of the record, s.
     pub spacing: f64,
     /// Root mean square residual of a fit without a moment, in units of the white part.
     pub residual: f64,
@@ -81,7 +83,7 @@ pub(super) struct Search<'a> {
     pub iterations: usize,
     pub evaluations: usize,
     /// Moments without gain at any start, with their BIC.
-    pub unseen: Vec<(MomentKind, f64)>,
+    pub moments_without_gain: Vec<(MomentKind, f64)>,
 }
 
 /// Result of a search: maximum of the likelihood with its derivatives.
@@ -92,13 +94,13 @@ pub(super) struct Maximum {
 }
 
 impl Search<'_> {
-    /// Point at a start; `None` if it is not a ship or not finite.
+    /// Point at a start; `None` if K/T is not positive or the likelihood not finite.
     pub fn evaluate(&mut self, start: Start) -> Option<Point> {
         self.evaluations += 1;
         evaluate(self.records, &[start]).pop()?
     }
 
-    /// Points at starts, computed two at a time; `None` for a start without a ship or a finite likelihood.
+    /// Points at starts, computed two at a time; `None` as for [`evaluate`](Self::evaluate).
     fn points(&mut self, starts: &[Start]) -> impl Iterator<Item = Option<Point>> {
         let records = self.records;
         let evaluations = &mut self.evaluations;
@@ -108,25 +110,25 @@ impl Search<'_> {
     fn score_and_information(&mut self, point: &Point) -> Option<ScoreAndInformation> {
         let derivatives = score_and_information(self.records, point)?;
         // One filter for 1/T and one for every entry.
-        self.evaluations += 1 + derivatives.score.len() - SHARED_PARAMETERS;
+        self.evaluations += 1 + derivatives.gradient.len() - SHARED_PARAMETERS;
         Some(derivatives)
     }
 
-    /// Start with the lowest `height`: −2 log L, or restricted −2 log L if only the noise differs;
-    /// `None` if no start is a ship with a finite likelihood.
+    /// Point of the start with the lowest `height`: −2 log L, or restricted −2 log L if only the noise differs. `None`
+    /// if no start has a point.
     pub fn best_start(&mut self, starts: &[Start], height: fn(&Point) -> f64) -> Option<Point> {
         self.points(starts).flatten().min_by(|a, b| height(a).total_cmp(&height(b)))
     }
 
-    /// Start with the lowest restricted −2 log L among starts of increasing size; a size after which it rises by more
-    /// than [`STEEP_RISE`] above `without` a moment ends the search.
+    /// Point with the lowest restricted −2 log L among starts of increasing size. A rise by more than [`STEEP_RISE`]
+    /// above both the start before and `without`, the value without a moment, ends the search.
     pub fn best_level(&mut self, starts: &[Start], without: Option<f64>) -> Option<Point> {
         let mut best: Option<Point> = None;
         let mut last = f64::INFINITY;
         for point in self.points(starts).flatten() {
-            let is_steep = without.is_some_and(|without| point.restricted > last.max(without) + STEEP_RISE);
-            last = point.restricted;
-            if best.as_ref().is_none_or(|best| point.restricted < best.restricted) {
+            let is_steep = without.is_some_and(|without| point.restricted_deviance > last.max(without) + STEEP_RISE);
+            last = point.restricted_deviance;
+            if best.as_ref().is_none_or(|best| point.restricted_deviance < best.restricted_deviance) {
                 best = Some(point);
             }
             if is_steep {
@@ -136,7 +138,7 @@ impl Search<'_> {
         best
     }
 
-    /// Start at the noise vectors obtained by `moved` from given vectors.
+    /// Start at this 1/T with the noise vectors that `moved` makes of given vectors.
     fn start(
         &self,
         inverse_T: f64,
@@ -190,21 +192,21 @@ impl Search<'_> {
         [0.2, 0.35, 0.5, 0.65].map(start).into()
     }
 
-    /// Maximum likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
+    /// Maximum likelihood near a point: quasi-Newton steps (BFGS) that begin as Fisher scoring.
     ///
     /// 1/T follows the likelihood and the noise the restricted likelihood, so a step may lower the restricted
     /// likelihood by up to half of [`SLACK`]. `None` if the derivatives are not finite.
     pub fn maximise(&mut self, start: Point) -> Option<Maximum> {
         let mut point = start;
         let mut derivatives = self.score_and_information(&point)?;
-        let mut free = self.free(&point, &derivatives.score);
+        let mut free = self.free(&point, &derivatives.gradient);
         let mut inverse = inverse_information(&derivatives, &free);
         for _ in 0..self.iterations {
-            let score = picked(&derivatives.score, &free);
-            let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
+            let gradient = picked(&derivatives.gradient, &free);
+            let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &gradient)) else {
                 return Some(Maximum { point, derivatives, has_converged: false });
             };
-            let promise = -step.dot(&score);
+            let promise = -step.dot(&gradient);
             let settled = if free.len() > 1 { MIN_DECREASE } else { MIN_DECREASE_ALONE };
             if promise <= settled {
                 return Some(Maximum { point, derivatives, has_converged: true });
@@ -213,7 +215,8 @@ impl Search<'_> {
             let mut share = if largest > MAX_LOG_STEP { MAX_LOG_STEP / largest } else { 1.0 };
             let lower = (0..HALVINGS).find_map(|_| {
                 let moved = self.moved(&point, &free, &(&step * share));
-                let next = self.evaluate(moved).filter(|next| next.restricted < point.restricted + SLACK);
+                let next =
+                    self.evaluate(moved).filter(|next| next.restricted_deviance < point.restricted_deviance + SLACK);
                 if next.is_none() {
                     share *= 0.4;
                 }
@@ -225,9 +228,9 @@ impl Search<'_> {
             };
             point = lower;
             derivatives = self.score_and_information(&point)?;
-            let now = self.free(&point, &derivatives.score);
+            let now = self.free(&point, &derivatives.gradient);
             if now == free && share == 1.0 {
-                update(&mut inverse, &step, &(picked(&derivatives.score, &free) - score));
+                update(&mut inverse, &step, &(picked(&derivatives.gradient, &free) - gradient));
             } else {
                 inverse = inverse_information(&derivatives, &now);
                 free = now;
@@ -236,16 +239,16 @@ impl Search<'_> {
         Some(Maximum { point, derivatives, has_converged: false })
     }
 
-    /// Indices of the free unknowns in the score: an entry at the edge of its range is free only if the score points
-    /// inwards.
-    fn free(&self, point: &Point, score: &DVector<f64>) -> Vec<usize> {
+    /// Indices of the free unknowns in the gradient: an entry at the edge of its range is free only if a step against
+    /// the gradient points inwards.
+    fn free(&self, point: &Point, gradient: &DVector<f64>) -> Vec<usize> {
         let mut free = vec![0];
         let mut index = SHARED_PARAMETERS;
         for ((record, vector), ranges) in self.records.iter().zip(&point.vectors).zip(self.ranges) {
             for entry in vector.active_entries(record.has_gyro()) {
                 let [low, high] = ranges.range(vector, entry);
                 let log = vector.log[entry];
-                let outward = (log <= low && score[index] > 0.0) || (log >= high && score[index] < 0.0);
+                let outward = (log <= low && gradient[index] > 0.0) || (log >= high && gradient[index] < 0.0);
                 if !outward {
                     free.push(index);
                 }
@@ -273,11 +276,11 @@ impl Search<'_> {
 /// Initial sizes of a moment, in units of the residual of a fit without a moment.
 const LEVELS: [f64; 4] = [0.03, 0.2, 1.0, 5.0];
 
-fn picked(score: &DVector<f64>, free: &[usize]) -> DVector<f64> {
-    DVector::from_iterator(free.len(), free.iter().map(|&at| score[at]))
+fn picked(gradient: &DVector<f64>, free: &[usize]) -> DVector<f64> {
+    DVector::from_iterator(free.len(), free.iter().map(|&at| gradient[at]))
 }
 
-/// Inverse information of the free unknowns with b and b δ_r following.
+/// Inverse information of the free unknowns with b and b δ_r eliminated; `None` if it is singular.
 fn inverse_information(derivatives: &ScoreAndInformation, free: &[usize]) -> Option<DMatrix<f64>> {
     let information = reduced(&derivatives.information, free)?;
     let scale = DVector::from_iterator(free.len(), information.diagonal().iter().map(|x| x.sqrt().recip()));

@@ -2,7 +2,7 @@ use approx::assert_relative_eq;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::{from_deg, to_deg};
 use statrs::distribution::{ContinuousCDF, Normal};
-use trial::Noise;
+use trial::SensorNoise;
 
 use super::choice::PreparedRecords;
 use super::point::{Record, evaluate};
@@ -63,7 +63,9 @@ fn disturbed(case: &Case, noise: &ExtraNoise) -> Trial {
     let trial = record("disturbed", truth.time, heading, rudder);
     match noise {
         ExtraNoise::Walk(_) => trial,
-        ExtraNoise::RudderError(sd) => trial.with_noise(Noise { rudder: Some(from_deg(*sd)), ..Noise::default() }),
+        ExtraNoise::RudderError(sd) => {
+            trial.with_noise(SensorNoise { rudder_sd: Some(from_deg(*sd)), ..SensorNoise::default() })
+        }
     }
 }
 
@@ -126,17 +128,17 @@ fn the_score_is_the_derivative() {
         let numeric = 0.5 * (height(a + 1e-6) - height(a - 1e-6)) / 2e-6;
         // The sizes of the compass errors, and so the weights of the records, come from the restricted likelihood: the
         // two differ by the fitted unknowns.
-        assert_relative_eq!(derivatives.score[0], numeric, max_relative = 0.05);
+        assert_relative_eq!(derivatives.gradient[0], numeric, max_relative = 0.05);
         let mut at = 3;
         for number in 0..2 {
             for entry in vectors[number].active_entries(records[number].has_gyro()) {
                 let height = |by: f64| {
                     let mut vectors = vectors;
                     vectors[number].log[entry] += by;
-                    fit(a, &vectors).restricted
+                    fit(a, &vectors).restricted_deviance
                 };
                 let numeric = 0.5 * (height(1e-4) - height(-1e-4)) / 2e-4;
-                assert_relative_eq!(derivatives.score[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
+                assert_relative_eq!(derivatives.gradient[at], numeric, max_relative = 1e-2, epsilon = 5e-2);
                 at += 1;
             }
         }

@@ -21,7 +21,7 @@ pub(super) struct Weight {
     pub freedom: f64,
     /// Standard deviation of the compass error over b, rad s², if a declared rudder error fixes it; `None` if the
     /// compass error follows from the residual.
-    pub tied: Option<f64>,
+    pub compass_sd_per_gain: Option<f64>,
 }
 
 impl Weight {
@@ -35,7 +35,7 @@ impl Weight {
 
     /// Variance of the compass error at b and b δ_r, rad².
     pub fn variance(&self, b: f64, q: f64) -> f64 {
-        self.tied.map_or(self.rss(b, q) / self.freedom, |unit| (b * unit).powi(2))
+        self.compass_sd_per_gain.map_or(self.rss(b, q) / self.freedom, |unit| (b * unit).powi(2))
     }
 }
 

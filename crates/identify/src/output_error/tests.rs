@@ -140,7 +140,7 @@ fn the_robust_covariance_is_that_of_the_instrumental_variables() {
     let trial = [Case { samples: 15, period_s: 8.0, noise_deg: 0.2, ..Case::default() }.trial()];
     let instruments = crate::srivc::Settings::default().build().expect("valid");
     let [output_error, srivc] = [method().identify(&trial), instruments.identify(&trial)]
-        .map(|estimate| estimate.expect("steered").robust.expect("a robust covariance").matrix);
+        .map(|estimate| estimate.expect("steered").robust_covariance.expect("a robust covariance").matrix);
     for i in 0..3 {
         assert_relative_eq!(output_error[(i, i)], srivc[(i, i)], max_relative = 1e-5);
     }

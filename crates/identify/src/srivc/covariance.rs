@@ -7,14 +7,14 @@ use super::filter::{Filters, InstrumentalEquations, Point};
 use super::record::SrivcRecord;
 use crate::robust;
 
-/// Residuals of the simulated heading at the estimate, and its covariance.
-pub(super) struct Residuals {
+/// Statistics of the residuals of the simulated heading at the estimate, and the covariance of the estimate.
+pub(super) struct ResidualStatistics {
     /// Number of residuals.
     pub count: usize,
     /// Residual sum of squares, rad².
     pub rss: f64,
     /// Sum of squares of the heading about its mean, trial by trial, rad².
-    pub total: f64,
+    pub total_sum_of_squares: f64,
     /// Correlation of neighbouring residuals.
     pub lag1: f64,
     /// Number of residuals minus unknowns: three shared unknowns and two per record.
@@ -26,8 +26,8 @@ pub(super) struct Residuals {
     pub robust: Matrix3<f64>,
 }
 
-impl Residuals {
-    /// Residuals and covariance from every record, filtered with the final estimate.
+impl ResidualStatistics {
+    /// Statistics and covariance over all records, filtered with the final estimate.
     ///
     /// `None` if Z̃ᵀZ̃ is singular or without degrees of freedom for the variance.
     pub fn new(records: &[SrivcRecord], point: &Point, blocks: &[InstrumentalEquations]) -> Option<Self> {
@@ -36,7 +36,7 @@ impl Residuals {
         if degrees_of_freedom <= 0.0 {
             return None;
         }
-        let (mut rss, mut total) = (0.0, 0.0);
+        let (mut rss, mut total_sum_of_squares) = (0.0, 0.0);
         let mut residuals = Vec::with_capacity(records.len());
         let mut scores = Vec::with_capacity(records.len());
         for ((record, block), &start) in records.iter().zip(blocks).zip(&point.starts) {
@@ -56,7 +56,7 @@ impl Residuals {
                 sum += row.heading;
                 squares += row.heading * row.heading;
             });
-            total += squares - sum * sum / record.observed_headings as f64;
+            total_sum_of_squares += squares - sum * sum / record.observed_headings as f64;
             residuals.push(record_residuals);
             scores.push(record_scores);
         }
@@ -65,7 +65,7 @@ impl Residuals {
         Some(Self {
             count,
             rss,
-            total,
+            total_sum_of_squares,
             lag1: robust::lag1_autocorrelation(residuals.iter().map(Vec::as_slice)),
             degrees_of_freedom,
             white: inverse * (rss / degrees_of_freedom),

@@ -15,7 +15,7 @@ pub(super) struct SharedParameters {
     /// b = K/T, 1/s².
     pub b: f64,
     /// b δ_r, rad/s².
-    pub bias: f64,
+    pub offset: f64,
 }
 
 /// Point of the iteration: the shared unknowns and the state at the first row of each record.
@@ -30,8 +30,11 @@ impl Point {
     pub fn towards(&self, other: &Self, share: f64) -> Self {
         let between = |from: f64, to: f64| from + share * (to - from);
         let (from, to) = (&self.shared, &other.shared);
-        let shared =
-            SharedParameters { a: between(from.a, to.a), b: between(from.b, to.b), bias: between(from.bias, to.bias) };
+        let shared = SharedParameters {
+            a: between(from.a, to.a),
+            b: between(from.b, to.b),
+            offset: between(from.offset, to.offset),
+        };
         let start = |(from, to): (&State, &State)| State {
             heading: between(from.heading, to.heading),
             yaw_rate: between(from.yaw_rate, to.yaw_rate),
@@ -93,7 +96,7 @@ impl Filters {
         if h != self.transition.value.h {
             self.transition = TangentTransition::new(self.shared.a, h);
         }
-        let SharedParameters { b, bias, .. } = self.shared;
+        let SharedParameters { b, offset, .. } = self.shared;
         let exact = &self.transition.value;
         let rate = 1.0 / h;
         let slope = (row.rudder - before.rudder) * rate;
@@ -101,7 +104,7 @@ impl Filters {
         self.lagged = exact.advance(lag, before.heading, (row.heading - before.heading) * rate).yaw_rate;
         self.unit = exact.advance(self.unit, 1.0, 0.0);
         self.steered = exact.advance(self.steered, before.rudder, slope);
-        let force = b * before.rudder + bias;
+        let force = b * before.rudder + offset;
         self.sensitivity = self.transition.advance(self.motion, self.sensitivity, force, b * slope);
         self.motion = exact.advance(self.motion, force, b * slope);
     }

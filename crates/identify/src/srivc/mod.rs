@@ -39,7 +39,7 @@ use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_iterations, require};
-use covariance::Residuals;
+use covariance::ResidualStatistics;
 use filter::{InstrumentalEquations, LeftColumns, Point, SharedParameters};
 use record::SrivcRecord;
 
@@ -120,16 +120,16 @@ impl Identifier for Srivc {
             evaluations += 1;
         }
         let (solution, iterations) = self.iterate(&records, start)?;
-        let SharedParameters { a, b, bias } = solution.point.shared;
+        let SharedParameters { a, b, offset } = solution.point.shared;
         let sign = if backwards { -1.0 } else { 1.0 };
         let inverse_T = sign * a;
         if !(b > 0.0 && b.is_finite() && a.is_finite()) {
             return Err(IdentifyError::NotAShip { inverse_T, K_over_T: b });
         }
-        let residuals = Residuals::new(&records, &solution.point, &solution.blocks)
+        let residuals = ResidualStatistics::new(&records, &solution.point, &solution.blocks)
             .ok_or(IdentifyError::Singular { condition: solution.condition, limit: self.settings.condition_limit })?;
         // (a, b, b δ_r) of the direction of the filters → (1/T, K/T, δ_r).
-        let jacobian = Matrix3::new(sign, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -bias / (b * b), 1.0 / b);
+        let jacobian = Matrix3::new(sign, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -offset / (b * b), 1.0 / b);
         let covariance = |matrix: &Matrix3<f64>| Covariance {
             matrix: jacobian * matrix * jacobian.transpose(),
             degrees_of_freedom: Some(residuals.degrees_of_freedom),
@@ -144,15 +144,15 @@ impl Identifier for Srivc {
             warnings.push(WarningCode::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
         }
         Ok(Estimate {
-            response: FirstOrder { inverse_T, K_over_T: b, rudder_bias: bias / b },
+            response: FirstOrder { inverse_T, K_over_T: b, rudder_bias: offset / b },
             uncertainty,
-            robust: Some(robust_covariance),
+            robust_covariance: Some(robust_covariance),
             stop: StopReason::Converged,
             evaluations: evaluations + iterations + 1,
             noise: None,
             diagnostics: vec![
                 ("iterations", iterations as f64),
-                ("r_squared", 1.0 - residuals.rss / residuals.total),
+                ("r_squared", 1.0 - residuals.rss / residuals.total_sum_of_squares),
                 ("condition", solution.condition),
                 ("heading_rmse_deg", to_deg((residuals.rss / count).sqrt())),
                 ("lag1_autocorrelation", residuals.lag1),
@@ -166,7 +166,7 @@ impl Srivc {
     /// Start of the iteration: filters with their pole at 0 and the regressors as instruments.
     fn integral_least_squares(&self, records: &[SrivcRecord]) -> Result<Solution, IdentifyError> {
         let zero = Point {
-            shared: SharedParameters { a: 0.0, b: 0.0, bias: 0.0 },
+            shared: SharedParameters { a: 0.0, b: 0.0, offset: 0.0 },
             starts: vec![State::default(); records.len()],
         };
         self.solve(records, &zero, LeftColumns::Regressors)
@@ -193,8 +193,8 @@ impl Srivc {
             before = change;
             let gram = solution.blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>();
             let size = |theta: Vector3<f64>| theta.dot(&(gram * theta)).max(0.0).sqrt();
-            step = size(Vector3::new(change, now.b - last.shared.b, now.bias - last.shared.bias))
-                / size(Vector3::new(0.0, now.b, now.bias));
+            step = size(Vector3::new(change, now.b - last.shared.b, now.offset - last.shared.offset))
+                / size(Vector3::new(0.0, now.b, now.offset));
             if step <= self.settings.relative_step {
                 return Ok((solution, iteration));
             }
@@ -236,7 +236,7 @@ impl Srivc {
             .solve(&target.component_mul(&scale))
             .ok_or_else(|| singular(f64::INFINITY))?
             .component_mul(&scale);
-        let shared = SharedParameters { a: at.shared.a + theta[0], b: theta[1], bias: theta[2] };
+        let shared = SharedParameters { a: at.shared.a + theta[0], b: theta[1], offset: theta[2] };
         let starts = blocks.iter().map(|block| block.start(&theta)).collect();
         Ok(Solution { point: Point { shared, starts }, condition, blocks })
     }

@@ -61,7 +61,7 @@ impl SrivcRecord {
             while next <= row {
                 while let Some(corner) = corners.next_if(|corner| corner.row < next) {
                     if corner.row >= first {
-                        let angle = rudder[corner.row] + corner.before * (corner.time - time[corner.row]);
+                        let angle = rudder[corner.row] + corner.rate_before * (corner.time - time[corner.row]);
                         push(corner.time, share(corner.time), angle, false);
                     }
                 }

@@ -90,7 +90,7 @@ impl Spread {
         let truth = [ship.K(), ship.T(), ship.rudder_bias];
         let (time, heading, rudder) = exact(case, &ship);
         let true_filter = Point {
-            shared: SharedParameters { a: ship.inverse_T, b: ship.K_over_T, bias: 0.0 },
+            shared: SharedParameters { a: ship.inverse_T, b: ship.K_over_T, offset: 0.0 },
             starts: vec![State::default()],
         };
         for seed in 0..REPEATS {
@@ -100,7 +100,7 @@ impl Spread {
                 srivc().solve(&[SrivcRecord::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
             let SharedParameters { a, b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
-            let robust = estimate.robust.as_ref().expect("a robust covariance").indices(&estimate.response);
+            let robust = estimate.robust_covariance.as_ref().expect("a robust covariance").indices(&estimate.response);
             let found = [estimate.K(), estimate.T(), estimate.rudder_bias()];
             for i in 0..2 {
                 spread.value[i].push(found[i].value / truth[i]);
@@ -208,7 +208,7 @@ fn either_direction_of_time_gives_the_same_answer() {
     });
     assert_relative_eq!(forwards.a, -backwards.a, max_relative = 1e-7);
     assert_relative_eq!(forwards.b, backwards.b, max_relative = 1e-7);
-    assert_relative_eq!(forwards.bias, backwards.bias, max_relative = 1e-6, epsilon = 1e-10);
+    assert_relative_eq!(forwards.offset, backwards.offset, max_relative = 1e-6, epsilon = 1e-10);
 }
 
 /// A rudder put over between two rows leaves a residual of degrees, about which full steps oscillate; the fixed point

@@ -47,7 +47,7 @@ pub(crate) fn remarks(
     remarks
 }
 
-/// Manoeuvres that were not tested, or to a single side only.
+/// Remarks on manoeuvres that were not tested, or were tested to one side only.
 fn sides(tested: &[TestedManoeuvre]) -> Vec<String> {
     let names =
         [(ZIG_ZAG_10_10, "10/10 zig-zag"), (ZIG_ZAG_20_20, "20/20 zig-zag"), (TURNING_CIRCLE_35, "turning circle")];

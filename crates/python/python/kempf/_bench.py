@@ -23,12 +23,12 @@ class Standing:
 
     #: Task, such as ``"circle"``, which determines the score.
     task: str
-    #: The scenario of its records.
+    #: Name of the scenario of the records.
     field: str
     method: str
     #: Number of cases.
     cases: int
-    #: Cases without an answer, which rank below any answer.
+    #: Number of cases without an estimate, which rank below every estimate.
     failed: int
     #: Median of the score: heading error, deg, or the larger error of K and T, %. ``None`` for failed answers.
     median: Optional[float]
@@ -42,7 +42,7 @@ class Standing:
 class BenchResult(Result):
     """The leaderboards of a benchmark; ``document["cases"]`` has every answer."""
 
-    #: Task by task, the best method first.
+    #: Scores task by task, the best method first.
     standings: tuple[Standing, ...]
     #: Skipped records, with reasons.
     warnings: tuple[str, ...]

@@ -19,15 +19,15 @@ from ._result import Result
 class Found:
     """A manoeuvre in a log."""
 
-    #: The log.
+    #: File of the log.
     file: str
-    #: Its number, which ``trial`` of :func:`kempf.read` takes.
+    #: Number of the manoeuvre in the log, from 1: the argument ``trial`` of :func:`kempf.read`.
     trial: int
-    #: Such as ``"zig-zag 10/10"``.
+    #: Kind of the manoeuvre, such as ``"zig-zag 10/10"``.
     kind: str
     from_s: float
     until_s: float
-    #: Clock times of both ends, where the log has a clock.
+    #: Clock times of beginning and end; ``None`` if the log has no clock.
     clock: Optional[tuple[str, str]]
     #: Number of executes.
     executes: int
@@ -42,7 +42,7 @@ class Found:
 class FindResult(Result):
     """The manoeuvres found in logs."""
 
-    #: In the order of the logs, and of time.
+    #: Manoeuvres in the order of the logs and of time.
     manoeuvres: tuple[Found, ...]
     #: Warnings on the logs.
     warnings: tuple[str, ...]

@@ -22,25 +22,26 @@ class Method:
 
     #: Identifier, such as ``"output-error"``.
     method: str
-    #: Whether it gave an answer.
+    #: ``True`` if the method gave an estimate.
     ok: bool
-    #: Reason of a failure.
+    #: Reason of a failure; ``None`` for an estimate.
     reason: Optional[str]
     #: Gain K, 1/s.
     K_per_s: Optional[Quantity]
-    #: Time constant T, s; negative for a ship that is unstable on her course.
+    #: Time constant T, s; negative for a course-unstable ship.
     T_s: Optional[Quantity]
     #: Rudder bias δ_r, deg.
     delta_r_deg: Optional[Quantity]
-    #: K' = K L/V, where length and speed of the ship are known.
+    #: K' = K L/V; ``None`` if length or speed of the ship is unknown.
     K_prime: Optional[Quantity]
-    #: T' = T V/L, where length and speed of the ship are known.
+    #: T' = T V/L; ``None`` if length or speed of the ship is unknown.
     T_prime: Optional[Quantity]
-    #: Whether T is negative.
+    #: ``True`` if the ship is course-unstable (T < 0).
     course_unstable: Optional[bool]
     #: Root mean square of measured less replayed heading on the fitted records, deg.
     heading_rmse_deg: Optional[float]
-    #: The same on every validation record; only its initial state is fitted.
+    #: Root mean square of measured less replayed heading on every validation record, deg. Only the initial state of
+    #: the record is fitted.
     validation_rmse_deg: tuple[Optional[float], ...]
     #: Diagnostics of the method.
     diagnostics: Mapping[str, float]
@@ -76,11 +77,11 @@ class ZigZag:
     initial_turning_time_s: Optional[float]
     #: Overshoot angles in their order, deg; ``None`` for a peak outside the record.
     overshoots_deg: tuple[Optional[float], ...]
-    #: Their standard deviations, deg.
+    #: Standard deviations of the overshoot angles, deg.
     overshoots_sd_deg: tuple[Optional[float], ...]
-    #: Period, s.
+    #: Period of the zig-zag, s.
     period_s: Optional[float]
-    #: Criteria of IMO MSC.137(76), where length and speed are known: each as in the document.
+    #: Criteria of IMO MSC.137(76), each as in the document; empty if length or speed is unknown.
     imo: tuple[Mapping[str, Any], ...]
 
 
@@ -90,10 +91,10 @@ class RecordEntry:
 
     file: str
     sha256: str
-    #: Rows with a rudder.
+    #: Number of rows with a rudder.
     samples: int
     duration_s: float
-    #: ``None`` where it is no zig-zag.
+    #: Characteristics of the zig-zag; ``None`` if the record is no zig-zag.
     zigzag: Optional[ZigZag]
 
     @classmethod
@@ -117,11 +118,11 @@ class FitResult(Result):
 
     _model = "fit.json"
 
-    #: Answers in the order of the methods.
+    #: Results in the order of the methods.
     methods: tuple[Method, ...]
-    #: Records that were fitted.
+    #: Fitted records.
     records: tuple[RecordEntry, ...]
-    #: Warnings on the records and on the answers.
+    #: Warnings on the records and on the results.
     warnings: tuple[str, ...]
     _text: str = field(repr=False)
     _native: _kempf.Fit = field(repr=False)

@@ -40,13 +40,13 @@ class Figure:
     """A figure of merit of a manoeuvre, such as ``first_overshoot_deg``, in the unit of its name."""
 
     median: float
-    #: Interval that holds half of the drawn ships.
+    #: 50 % interval, which contains half of the drawn ships.
     ci50: tuple[float, float]
-    #: Interval that holds nine in ten of them.
+    #: 90 % interval, which contains nine in ten of the drawn ships.
     ci90: tuple[float, float]
-    #: Whether the manoeuvre leaves the range of the fitted records.
+    #: ``True`` if the manoeuvre leaves the range of the fitted records.
     extrapolated: Optional[bool] = None
-    #: Measured value, for a replayed record.
+    #: Measured value of a replayed record; ``None`` for a manoeuvre that was not made.
     measured: Optional[float] = None
     #: Share of each source of uncertainty in the spread.
     shares: Mapping[str, float] = field(default_factory=dict)
@@ -69,7 +69,7 @@ class Manoeuvre:
 
     kind: str
     figures: Mapping[str, Figure]
-    #: Number of drawn ships that did not complete it.
+    #: Number of drawn ships that did not complete the manoeuvre.
     lost: int
 
 
@@ -81,7 +81,7 @@ class Replay:
     #: Share of the measured headings inside the 90 % band.
     band_coverage_90: float
     heading_rmse_deg: float
-    #: Whether rudder or yaw rate of the record leave the range of the fitted records.
+    #: ``True`` if rudder or yaw rate of the record leaves the range of the fitted records.
     extrapolated: bool
     figures: Mapping[str, Figure]
 
@@ -96,7 +96,7 @@ class Criterion:
     unit: str
     median: float
     probability_of_passing: float
-    #: Whether the manoeuvre leaves the range of the fitted records.
+    #: ``True`` if the manoeuvre leaves the range of the fitted records.
     extrapolated: bool
 
 
@@ -106,7 +106,7 @@ class PredictResult(Result):
 
     manoeuvres: tuple[Manoeuvre, ...]
     replays: tuple[Replay, ...]
-    #: Criteria of IMO, where length and speed of the ship are known.
+    #: IMO criteria; empty if length or speed of the ship is unknown.
     imo: tuple[Criterion, ...]
     #: Warnings.
     warnings: tuple[str, ...]

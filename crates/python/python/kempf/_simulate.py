@@ -32,7 +32,7 @@ class Motion:
     heading_deg: Any
     yaw_rate_deg_s: Any
     rudder_deg: Any
-    #: ``None`` for a ship without a speed of her own.
+    #: Speed, m/s; ``None`` if the equations of the ship have no speed.
     speed_m_s: Any
 
     def __repr__(self) -> str:
@@ -43,17 +43,17 @@ class Motion:
 class Truth:
     """Truth of a simulated trial."""
 
-    #: The first-order response nearest to the ship; the ship herself where she is first order.
+    #: First-order response nearest to the ship; for a first-order ship, its indices.
     nearest: Optional[Indices]
-    #: The first-order base of a ship with effects.
+    #: First-order base of a ship with effects.
     own: Optional[Indices]
-    #: Effects that a first-order ship lacks in this trial.
+    #: Identifiers of the effects in this trial that a first-order ship lacks.
     effects: tuple[str, ...]
-    #: Values that were drawn for this trial, in the units of their keys.
+    #: Values drawn for this trial, by key and in the unit of the key.
     drawn: Mapping[str, float]
     #: Times of the rudder orders, s.
     executes_s: tuple[float, ...]
-    #: The motion itself.
+    #: True motion.
     motion: Motion
     _text: str = field(repr=False)
 
@@ -97,9 +97,9 @@ class Truth:
 class Simulated:
     """A simulated trial: the record that instruments made of it, and the truth."""
 
-    #: The record, as methods see it.
+    #: Record of the instruments, the input of the methods.
     record: Record
-    #: The truth, which methods do not see.
+    #: Truth, which is no input of the methods.
     truth: Truth
 
     def __repr__(self) -> str:

@@ -24,7 +24,7 @@ SHOWN = (
     *(f"{index} {what} [%]" for index in "KT" for what in ("mean error", "sd", "coverage")),
 )
 
-#: Most lines that are shown.
+#: Maximum number of lines shown.
 LINES = 40
 
 

@@ -40,24 +40,25 @@ class Effect:
     id: str
     #: Most probable form of its term, such as ``"r|r|"``.
     form: str
-    #: The equation with it.
+    #: Equation of the response with the effect.
     equation: str
-    #: The one record in which it acts.
+    #: Record in which the effect acts; ``None`` for all records.
     only: Optional[str]
     #: Parameters by their symbols, averaged over the structures.
     parameters: Mapping[str, Parameter]
-    #: Effects that these records cannot distinguish from it; one of the group is present.
+    #: Effects that these records cannot distinguish from this effect; one of the group is present.
     aliases: tuple[str, ...]
-    #: Identifier and form of every term that these records cannot distinguish from it.
+    #: Identifier and form of every term that these records cannot distinguish from this effect.
     alias_forms: tuple[tuple[str, str], ...]
-    #: Probability that it, or one of its group, is present.
+    #: Probability that the effect, or another of its group, is present.
     probability: float
-    #: −2 log of the ratio of the evidence with it to that without; negative where it is better.
+    #: −2 log of the evidence ratio with and without the effect; negative if the effect improves the model.
     delta_bic: float
+    #: p value (χ²) of the coefficients in a fit with all other candidates.
     p_value: float
-    #: The probability with the prior odds of all effects together multiplied, by the factor.
+    #: Probability of the effect, by the factor that multiplies the prior odds of all effects.
     probability_by_prior_odds: Mapping[float, float]
-    #: The evidence in a sentence.
+    #: Evidence in one sentence.
     evidence: str
 
 
@@ -79,7 +80,7 @@ class Structure:
 
     #: Identifier and form of every effect.
     effects: tuple[tuple[str, str], ...]
-    #: Probability.
+    #: Probability of the structure.
     weight: float
 
 
@@ -87,7 +88,7 @@ class Structure:
 class Horizon:
     """Root mean square heading errors of replays that begin anew, deg."""
 
-    #: Seconds from one beginning to the next.
+    #: Time from one restart of the replay to the next, s.
     horizon_s: float
     before_deg: float
     after_deg: float
@@ -98,13 +99,13 @@ class Errors:
     """Heading errors of a record before and after, deg; only the initial state is fitted to a held-out one."""
 
     file: str
-    #: Whether it is a validation record.
+    #: ``True`` for a validation record.
     held_out: bool
-    #: Root mean square of the whole replay with the base.
+    #: Root mean square heading error of the whole replay with the base, deg.
     before_deg: float
-    #: The same with the average of the structures.
+    #: Root mean square heading error of the whole replay with the average of the structures, deg.
     after_deg: float
-    #: The errors against how far ahead a replay goes, up to the whole record; none of a record that was fitted.
+    #: Errors by the time between restarts of the replay, up to the whole record; empty for a fitted record.
     horizons: tuple[Horizon, ...]
 
 
@@ -114,7 +115,7 @@ class TraceResult(Result):
 
     _model = "trace.json"
 
-    #: The result in one sentence.
+    #: Result in one sentence.
     headline: str
     #: ``"clean"``, ``"disturbed"``, ``"traced"``, ``"located"`` or ``"unexplained"``.
     verdict: str
@@ -124,15 +125,15 @@ class TraceResult(Result):
     T_s: Quantity
     #: Rudder bias averaged over the structures, deg.
     delta_r_deg: Quantity
-    #: Effects that are named, the most probable first.
+    #: Named effects, the most probable first.
     effects: tuple[Effect, ...]
     #: All candidate effects.
     candidates: tuple[Candidate, ...]
     #: Structures, the most probable first.
     structures: tuple[Structure, ...]
-    #: Errors of every record, first of those that were fitted.
+    #: Errors of every record, the fitted records first.
     errors: tuple[Errors, ...]
-    #: The most informative next manoeuvre.
+    #: Most informative next manoeuvre.
     next_trial: Optional[str]
     #: Warnings.
     warnings: tuple[str, ...]

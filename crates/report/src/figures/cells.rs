@@ -1,6 +1,6 @@
-//! Maps of cells: values over two lists of names, one panel each, as colours and as numbers in the cells. Many-coloured
-//! maps have the colours of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any
-//! common colour blindness.
+//! Maps of cells: values over two lists of names, as colours and as numbers in the cells, in one or more panels. Values
+//! other than shares have the colours of viridis (Smith and van der Walt 2015): equal steps look equal, also in grey
+//! and with any common colour blindness.
 
 use plotters::element::{IntoDynElement as _, Rectangle};
 use plotters::style::colors::colormaps::ViridisRGB;
@@ -17,7 +17,7 @@ use crate::legend::{LegendEntry, LegendSymbol, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
 use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
-use crate::sheet::{AxisSide, Grid, MAX_NAMES_SHARE, Sheet};
+use crate::sheet::{Grid, MAX_NAMES_SHARE, Sheet, TitledAxis};
 use crate::theme::Theme;
 
 /// Content of a cell.
@@ -33,14 +33,14 @@ pub struct MapCell {
     pub trials: u64,
 }
 
-/// Reason of an outline.
+/// Reason for the outline of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outline {
     /// Correct cell: a solid line.
-    Right,
+    Correct,
     /// Cell that is also acceptable: a dotted line.
     Alias,
-    /// Cell of the finding: a solid line.
+    /// Cell that the finding in the title is about: a solid line.
     Finding,
 }
 
@@ -77,7 +77,7 @@ const MIN_FONT_PT: f64 = 6.5;
 /// Height to which the rows of a wide figure grow together, as a share of its width.
 const HEIGHT: f64 = 0.28;
 
-/// Maximum factor by which rows grow to reach that height.
+/// Maximum factor by which rows grow to reach `HEIGHT`.
 const SPREAD: f64 = 1.6;
 
 impl CellMap {
@@ -132,7 +132,7 @@ impl CellMap {
 pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     let outlines = [
-        (Outline::Right, SOLID, "right"),
+        (Outline::Correct, SOLID, "right"),
         (Outline::Alias, DOTTED, "mostly indistinguishable from it"),
         (Outline::Finding, SOLID, "in the title"),
     ];
@@ -141,8 +141,8 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
         &shown.map(|(_, dash, name)| LegendEntry::new(LegendSymbol::Outline(dash), *name)).collect::<Vec<_>>(),
     )?;
     // The frame is at the edges of the cells.
-    let column = AxisSide::new(Axis::columns(&data.columns), data.titles[0].as_str());
-    let row = AxisSide::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
+    let column = TitledAxis::new(Axis::columns(&data.columns), data.titles[0].as_str());
+    let row = TitledAxis::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
     let height = data.rows.len().max(1) as f64 * data.pitch(theme);
     let heads =
         data.panels.iter().map(|(head, _)| Some(LegendEntry::new(LegendSymbol::Nothing, head.as_ref()?))).collect();
@@ -181,11 +181,11 @@ fn bar(sheet: &mut Sheet, tick_rule: TickRule, title: &str, shading: &Shading) -
         TickRule::Logarithmic => Axis::log_covering(&[low, high]).between(low, high),
         _ => Axis::linear(low, high, TickRule::Decimal),
     };
-    let rows = vec![(AxisSide::new(Axis::rows(&[], 0.5), ""), 0.9 * theme.small_font)];
-    let grid = Grid { columns: vec![AxisSide::new(axis, title)], rows, ..Grid::default() };
+    let rows = vec![(TitledAxis::new(Axis::rows(&[], 0.5), ""), 0.9 * theme.small_font)];
+    let grid = Grid { columns: vec![TitledAxis::new(axis, title)], rows, ..Grid::default() };
     let piece = |number: usize| {
         let at = |share: f64| value(shading.low + share / PIECES as f64 * (shading.high - shading.low));
-        // Each piece reaches to the end, under all later ones: pieces side by side would let the paper through.
+        // Each piece reaches to the end, under all later pieces: the paper would show between pieces side by side.
         let corners = [(at(number as f64), -0.5), (high, 0.5)];
         Rectangle::new(corners, shading.colour(at(number as f64 + 0.5)).0.filled()).into_dyn()
     };
@@ -205,7 +205,7 @@ fn written(cell: &MapCell) -> String {
 struct Shading {
     /// Minimum of the values, or of their decadic logarithms if `is_log`.
     low: f64,
-    /// Maximum, like `low`.
+    /// Maximum of the values, or of their decadic logarithms if `is_log`.
     high: f64,
     is_log: bool,
     is_shares: bool,

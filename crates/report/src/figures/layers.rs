@@ -4,8 +4,8 @@ use plotters::element::ErrorBar;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
-use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Stack};
-use super::reach::{Extents, MAX_INTERVAL_SHARE, robust_range};
+use super::extents::{Extents, MAX_INTERVAL_SHARE, robust_range};
+use super::panels::{AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelGroup, PanelRow, Panels};
 use super::shared::{ACROSS_PAD, BEYOND_AXIS_REMARK, Bars, PAD_SHARE, draw_record, spread_overlapping, zero_stroke};
 use super::{point_labels, side_labels};
 use crate::axis::{Axis, TickRule};
@@ -16,15 +16,15 @@ use crate::curve::PlotCurve;
 use crate::drawing::Drawing;
 use crate::legend::{LegendEntry, LegendSymbol};
 use crate::palette::{DASHED, DOTTED, INK, RECORD, SHORT_DASH};
-use crate::sheet::{AxisSide, Grid, Sheet};
+use crate::sheet::{Grid, Sheet, TitledAxis};
 use crate::theme::Theme;
 
 /// Data outside a figure, for its notes.
 #[derive(Default)]
-struct Unshown {
+struct DataOutsideFrame {
     /// `true` if a layer is cut.
     is_cut: bool,
-    /// Maximum number of dots beyond the panels of a stack.
+    /// Number of dots beyond the panels of a group: the maximum over the groups.
     dots: usize,
     /// `true` if a mark is beyond a panel.
     marks: bool,
@@ -52,34 +52,34 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
         data.names_aside = false;
-        for stack in data.stacks.iter_mut().filter(|stack| stack.columns.is_none() && stack.rows.len() == 1) {
-            stack.columns = (stack.x.len() > NARROW).then_some(NARROW);
+        for group in data.groups.iter_mut().filter(|group| group.columns.is_none() && group.rows.len() == 1) {
+            group.columns = (group.x.len() > NARROW).then_some(NARROW);
         }
         return data;
     }
-    let height = |stack: &Stack| {
-        let rows = stack.columns.map_or(1, |across| stack.panels.len().div_ceil(across.max(1)));
-        if stack.has_equal_scales { 0.0 } else { stack.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
+    let height = |group: &PanelGroup| {
+        let rows = group.columns.map_or(1, |across| group.panels.len().div_ceil(across.max(1)));
+        if group.has_equal_scales { 0.0 } else { group.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
     };
-    let all: f64 = side_by_side(&data, theme).map(|stacks| stacks.iter().map(height).fold(0.0, f64::max)).sum();
+    let all: f64 = side_by_side(&data, theme).map(|groups| groups.iter().map(height).fold(0.0, f64::max)).sum();
     let share = (WIDE[0] / all).clamp(WIDE[1], 1.0);
-    data.stacks.iter_mut().flat_map(|stack| &mut stack.rows).for_each(|row| row.height *= share);
+    data.groups.iter_mut().flat_map(|group| &mut group.rows).for_each(|row| row.height *= share);
     data
 }
 
-/// The stacks in rows: half-width ones in pairs, unless the figure is narrow.
-fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a [Stack]> {
+/// The groups in rows: half-width ones in pairs, unless the figure is narrow.
+fn side_by_side<'a>(data: &'a Panels, theme: &Theme) -> impl Iterator<Item = &'a [PanelGroup]> {
     let across = if theme.is_narrow() { 1 } else { 2 };
-    let rows = data.stacks.chunk_by(|left, right| left.is_half && right.is_half);
+    let rows = data.groups.chunk_by(|left, right| left.is_half && right.is_half);
     rows.flat_map(move |row| row.chunks(if row[0].is_half { across } else { 1 }))
 }
 
-/// Drawing of the stacks in reading order.
+/// Drawing of the groups in reading order.
 pub(super) fn panels(data: &Panels, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     annotated(data, finding, theme, &|_| Ok(None))
 }
 
-/// Drawing of the stacks, with `annotate` drawn over the first panel and its remark below.
+/// Drawing of the groups, with `annotate` drawn over the first panel and its remark below.
 pub(super) fn annotated(
     data: &Panels,
     finding: &str,
@@ -89,21 +89,21 @@ pub(super) fn annotated(
     let data = &fitted(data, theme);
     let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
-    let mut outside = Unshown::default();
+    let mut outside = DataOutsideFrame::default();
     let mut charts = Vec::new();
     // Panels of full width have a common left edge.
-    let whole = data.stacks.iter().filter(|stack| !stack.is_half);
-    let left = whole.map(|stack| sheet.left_margin(&grid(stack, theme).0)).fold(0.0, f64::max);
-    for stacks in side_by_side(data, theme) {
-        let width = if stacks[0].is_half && !theme.is_narrow() { 2 } else { 1 };
+    let whole = data.groups.iter().filter(|group| !group.is_half);
+    let left = whole.map(|group| sheet.left_margin(&grid(group, theme).0)).fold(0.0, f64::max);
+    for groups in side_by_side(data, theme) {
+        let width = if groups[0].is_half && !theme.is_narrow() { 2 } else { 1 };
         let gap = Sheet::panel_gap(theme);
         let part = (theme.width - side_labels::width(data, theme) - gap * (width - 1) as f64) / width as f64;
         let (top, mut lowest) = (sheet.y, sheet.y);
-        for (column, stack) in stacks.iter().enumerate() {
+        for (column, group) in groups.iter().enumerate() {
             sheet.y = top;
-            let (mut grid, mut is_cut) = grid(stack, theme);
-            grid.left = Some(if stack.is_half { 0.0 } else { left });
-            if stack.has_equal_scales {
+            let (mut grid, mut is_cut) = grid(group, theme);
+            grid.left = Some(if group.is_half { 0.0 } else { left });
+            if group.has_equal_scales {
                 // Longer labels of the vertical axis reduce the width, which changes the axis.
                 let mut margin = left;
                 for _ in 0..3 {
@@ -111,13 +111,13 @@ pub(super) fn annotated(
                     margin = margin.max(sheet.left_margin(&grid));
                 }
                 grid.left = Some(margin);
-                is_cut = is_beyond(&grid, stack);
+                is_cut = is_beyond(&grid, group);
             }
             outside.is_cut |= is_cut;
             let drawn = sheet.grid_within(grid, column as f64 * (part + gap), part)?;
-            draw(&drawn, stack, theme, &mut outside)?;
+            draw(&drawn, group, theme, &mut outside)?;
             if data.names_aside {
-                outside.names.extend(side_labels::draw(&drawn, stack, columns(stack, theme), theme)?);
+                outside.names.extend(side_labels::draw(&drawn, group, columns(group, theme), theme)?);
             }
             charts.extend(drawn);
             lowest = lowest.max(sheet.y);
@@ -129,7 +129,7 @@ pub(super) fn annotated(
     Ok(sheet.finish())
 }
 
-fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
+fn remarks(data: &Panels, outside: &DataOutsideFrame) -> Vec<String> {
     let dots = match outside.dots {
         0 => None,
         1 => Some(String::from("1 point lies beyond a panel, where an arrow is at its edge.")),
@@ -144,7 +144,7 @@ fn remarks(data: &Panels, outside: &Unshown) -> Vec<String> {
 
 fn entries(data: &Panels, theme: &Theme) -> Vec<LegendEntry> {
     let mut entries: Vec<LegendEntry> = Vec::new();
-    for panel in data.stacks.iter().flat_map(|stack| &stack.panels).filter(|_| !data.names_aside) {
+    for panel in data.groups.iter().flat_map(|group| &group.panels).filter(|_| !data.names_aside) {
         // If a band overlaps another one, its sample has the opacity of both.
         let mut light = 1.0;
         for layer in &panel.layers {
@@ -156,24 +156,24 @@ fn entries(data: &Panels, theme: &Theme) -> Vec<LegendEntry> {
                 .extend(name.and_then(|name| Some(LegendEntry::new(layer.legend_symbol(theme, 1.0 - light)?, name))));
         }
     }
-    let marks = data.stacks.iter().flat_map(|stack| &stack.marks).filter(|mark| !mark.label.is_empty());
+    let lines = data.groups.iter().flat_map(|group| &group.vertical_lines).filter(|line| !line.label.is_empty());
     entries.extend(
-        marks.map(|mark| LegendEntry::new(LegendSymbol::Upright(mark_stroke(&mark.label, theme)), &mark.label)),
+        lines.map(|line| LegendEntry::new(LegendSymbol::Upright(mark_stroke(&line.label, theme)), &line.label)),
     );
-    entries.extend(data.key_texts.iter().map(|text| LegendEntry::new(LegendSymbol::Nothing, text)));
+    entries.extend(data.legend_texts.iter().map(|text| LegendEntry::new(LegendSymbol::Nothing, text)));
     entries
 }
 
-/// Stroke of a marked value of an axis: dashed if it has a name in the key, otherwise dotted.
+/// Stroke of a marked value of an axis: dashed if it has a name in the legend, otherwise dotted.
 fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
     let (colour, dash) = if label.is_empty() { (RECORD, DOTTED) } else { (INK, SHORT_DASH) };
     Stroke { dash, ..Stroke::solid(colour, theme.thin) }
 }
 
-/// Number of panels of a stack side by side; on a narrow page one fewer of small multiples, unless they are a unit.
-fn columns(stack: &Stack, theme: &Theme) -> usize {
-    let narrower = usize::from(theme.is_narrow() && !stack.is_unbroken);
-    stack.columns.map_or(stack.x.len(), |across| across.saturating_sub(narrower)).max(1)
+/// Number of panels of a group side by side; on a narrow page one fewer of small multiples, unless they are a unit.
+fn columns(group: &PanelGroup, theme: &Theme) -> usize {
+    let narrower = usize::from(theme.is_narrow() && !group.is_unbroken);
+    group.columns.map_or(group.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
 /// Extents of layers along one axis. If the axis is limited against outliers, every value of a line or band is a
@@ -183,16 +183,16 @@ fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_ver
     for layer in layers {
         let pairs = layer.curves().flat_map(PlotCurve::finite_pairs);
         let values: Vec<f64> = pairs.map(|(x, y)| if is_vertical { y } else { x }).collect();
-        match (&layer.kind, layer.room) {
+        match (&layer.kind, layer.max_axis_widening) {
             (LayerKind::Cloud(_), _) => {}
-            (_, Some(room)) => extents.soft.extend(values.into_iter().map(|value| (value, room))),
+            (_, Some(widening)) => extents.clippable_values.extend(values.into_iter().map(|value| (value, widening))),
             (LayerKind::Dots(_), None) if is_vertical => extents.add(robust_range(values)),
             (LayerKind::Marks(marks), None) => {
                 values.into_iter().for_each(|value| extents.add([value]));
                 let ends = marks.intervals.iter().flatten().flatten().filter(|_| is_vertical);
-                extents.soft.extend(ends.map(|end| (*end, MAX_INTERVAL_SHARE)));
+                extents.clippable_values.extend(ends.map(|end| (*end, MAX_INTERVAL_SHARE)));
             }
-            (LayerKind::Line(_) | LayerKind::Band(..), None) if ruler.reach.is_some() => {
+            (LayerKind::Line(_) | LayerKind::Band(..), None) if ruler.outlier_limit.is_some() => {
                 values.into_iter().for_each(|value| extents.add([value]));
             }
             (_, None) => extents.add(values),
@@ -201,25 +201,25 @@ fn extents<'a>(layers: impl Iterator<Item = &'a Layer>, ruler: &AxisSpec, is_ver
     extents
 }
 
-/// Grid of a stack, and whether a layer is cut by its frame.
-fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
-    let count = columns(stack, theme);
+/// Grid of a group, and whether a layer is cut by its frame.
+fn grid(group: &PanelGroup, theme: &Theme) -> (Grid, bool) {
+    let count = columns(group, theme);
     let mut is_cut = false;
     let layers = |keep: &dyn Fn(usize) -> bool| -> Vec<&Layer> {
-        let kept = stack.panels.iter().enumerate().filter(|(index, _)| stack.columns.is_some() || keep(*index));
+        let kept = group.panels.iter().enumerate().filter(|(index, _)| group.columns.is_some() || keep(*index));
         kept.flat_map(|(_, panel)| &panel.layers).collect()
     };
     // Marks reach beyond their points by their radius, so they need free space at both sides.
     let has_marks = layers(&|_| true).iter().any(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let mut column = |number: usize| {
-        let ruler = &stack.x[if stack.columns.is_some() { 0 } else { number }];
+        let ruler = &group.x[if group.columns.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
-        data.fixed.extend(stack.marks.iter().map(|mark| mark.value));
+        data.fixed.extend(group.vertical_lines.iter().map(|line| line.value));
         let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD });
         is_cut |= cut;
-        AxisSide::new(axis, ruler.title.as_str())
+        TitledAxis::new(axis, ruler.title.as_str())
     };
-    let columns: Vec<AxisSide> = (0..count.min(stack.x.len() * count)).map(&mut column).collect();
+    let columns: Vec<TitledAxis> = (0..count.min(group.x.len() * count)).map(&mut column).collect();
     let mut row = |(number, row): (usize, &PanelRow)| {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
         data.fixed
@@ -232,24 +232,24 @@ fn grid(stack: &Stack, theme: &Theme) -> (Grid, bool) {
         let scale = (MAX_ROOM / taken).min(1.0);
         let [below, above] = row.room.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
         let axis = if row.room == [0.0; 2] { axis } else { axis.between(lo - below, hi + above) };
-        (AxisSide::new(axis, row.y.title.as_str()), theme.panel_height(row.height))
+        (TitledAxis::new(axis, row.y.title.as_str()), theme.panel_height(row.height))
     };
-    let rows: Vec<(AxisSide, f64)> = stack.rows.iter().enumerate().map(&mut row).collect();
+    let rows: Vec<(TitledAxis, f64)> = group.rows.iter().enumerate().map(&mut row).collect();
     let head = |panel: &LayeredPanel| {
-        // A layer with a name is in the key.
+        // A layer with a name is in the legend.
         let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
-        let is_sample = |layer: &&Layer| stack.columns.is_some() && is_nameless(layer);
+        let is_sample = |layer: &&Layer| group.columns.is_some() && is_nameless(layer);
         let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.legend_symbol(theme, 1.0));
         let head =
             [&panel.head, &panel.detail].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
         (!head.is_empty()).then(|| LegendEntry::new(sample.unwrap_or(LegendSymbol::Nothing), head))
     };
-    let heads = stack.panels.iter().map(head).collect();
-    let grid = match (stack.columns, rows.first(), columns.first()) {
+    let heads = group.panels.iter().map(head).collect();
+    let grid = match (group.columns, rows.first(), columns.first()) {
         (Some(_), Some((row, height)), Some(column)) => Grid {
             shared_title: Some(row.title.clone()),
             heads,
-            ..Grid::alike(stack.panels.len(), count, column.clone(), AxisSide::new(row.axis.clone(), ""), *height)
+            ..Grid::alike(group.panels.len(), count, column.clone(), TitledAxis::new(row.axis.clone(), ""), *height)
         },
         _ => Grid { columns, rows, heads, ..Grid::default() },
     };
@@ -269,20 +269,20 @@ fn equalise(grid: &mut Grid, width: f64) {
 }
 
 /// `true` if a layer goes beyond the axes of the only panel.
-fn is_beyond(grid: &Grid, stack: &Stack) -> bool {
+fn is_beyond(grid: &Grid, group: &PanelGroup) -> bool {
     let (Some(column), Some((row, _))) = (grid.columns.first(), grid.rows.first()) else { return false };
     let holds = |axis: &Axis, value: f64| value >= axis.ends().0 && value <= axis.ends().1;
-    let curves = stack.panels.iter().flat_map(|panel| &panel.layers).flat_map(Layer::curves);
+    let curves = group.panels.iter().flat_map(|panel| &panel.layers).flat_map(Layer::curves);
     let mut pairs = curves.flat_map(PlotCurve::finite_pairs);
     pairs.any(|(x, y)| !holds(&column.axis, x) || !holds(&row.axis, y))
 }
 
-/// Draws the panels of a stack.
-fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -> PlotResult {
-    let count = columns(stack, theme);
+/// Draws the panels of a group.
+fn draw(charts: &[Chart], group: &PanelGroup, theme: &Theme, outside: &mut DataOutsideFrame) -> PlotResult {
+    let count = columns(group, theme);
     let mut dots = 0;
-    for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate() {
-        background(chart, theme, stack, &stack.rows[if stack.columns.is_some() { 0 } else { index / count }])?;
+    for (index, (chart, panel)) in charts.iter().zip(&group.panels).enumerate() {
+        background(chart, theme, group, &group.rows[if group.columns.is_some() { 0 } else { index / count }])?;
         // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
         let (bands, layers): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
@@ -291,7 +291,7 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
         }
         chart.frame(theme)?;
         point_labels::draw(chart, &panel.layers, theme)?;
-        if stack.columns.is_some() {
+        if group.columns.is_some() {
             corner(chart, theme, panel)?;
         }
     }
@@ -300,11 +300,11 @@ fn draw(charts: &[Chart], stack: &Stack, theme: &Theme, outside: &mut Unshown) -
 }
 
 /// Draws what is behind the layers: lines at zero, levels, the reference and marked values of the horizontal axis.
-fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> PlotResult {
+fn background(chart: &Chart, theme: &Theme, group: &PanelGroup, row: &PanelRow) -> PlotResult {
     if row.zero {
         chart.horizontal(0.0, zero_stroke(theme))?;
     }
-    if stack.zero {
+    if group.zero {
         chart.vertical(None, 0.0, zero_stroke(theme))?;
     }
     for level in &row.levels {
@@ -313,7 +313,7 @@ fn background(chart: &Chart, theme: &Theme, stack: &Stack, row: &PanelRow) -> Pl
     if let Some(reference) = &row.reference {
         reference.horizontal(chart, theme)?;
     }
-    stack.marks.iter().try_for_each(|mark| chart.vertical(None, mark.value, mark_stroke(&mark.label, theme)))
+    group.vertical_lines.iter().try_for_each(|line| chart.vertical(None, line.value, mark_stroke(&line.label, theme)))
 }
 
 /// Writes the number of dots outside a small multiple into its corner, or that it has no dots.
@@ -331,7 +331,7 @@ fn corner(chart: &Chart, theme: &Theme, panel: &LayeredPanel) -> PlotResult {
 }
 
 /// Draws a layer; returns the number of dots beyond the panel.
-fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown) -> PlotResult<usize> {
+fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut DataOutsideFrame) -> PlotResult<usize> {
     let name = layer.name.as_deref();
     match &layer.kind {
         LayerKind::Line(pen) => chart.line(name, layer.curve.pairs(), pen.stroke(theme))?,
@@ -355,7 +355,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut Unshown
     Ok(0)
 }
 
-/// Marks points above and below a panel by small arrows at its edge, and counts them.
+/// Draws small arrows at the edge of a panel for the points above and below it; returns the number of these points.
 fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotResult<usize> {
     let rect = chart.rect;
     let mut count = 0;
@@ -371,8 +371,14 @@ fn edges(chart: &Chart, curve: &PlotCurve, size: f64, colour: RGBColor) -> PlotR
 }
 
 /// Draws marks with their intervals, and the line that joins them. A mark beyond the panel is an arrow at its edge.
-fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outside: &mut Unshown) -> PlotResult {
-    let Marks { look, intervals, joined, side_by_side } = marks;
+fn draw_marks(
+    chart: &Chart,
+    theme: &Theme,
+    layer: &Layer,
+    marks: &Marks,
+    outside: &mut DataOutsideFrame,
+) -> PlotResult {
+    let Marks { style, intervals, joined, side_by_side } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
     let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.page_x(*x)).collect();
     let across = if *side_by_side { spread_overlapping(&middles, 2.0 * theme.marker) } else { middles.clone() };
@@ -394,7 +400,7 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
         }
         chart.line(name, line, pen.stroke(theme))?;
     }
-    let stroke = Stroke::solid(look.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
+    let stroke = Stroke::solid(style.colour, joined.map_or(0.8, |pen| 0.7 * pen.width) * theme.line);
     chart.canvas.svg.begin(SvgGroup { is_interval: true, clip: Some(chart.bounds()), ..SvgGroup::named(name) });
     for (row, place) in places.iter().enumerate().filter(|(_, place)| is_inside(place) || *side_by_side) {
         let ends = intervals.get(row).copied().flatten().filter(|ends| ends.iter().all(|end| !end.is_nan()));
@@ -407,20 +413,20 @@ fn draw_marks(chart: &Chart, theme: &Theme, layer: &Layer, marks: &Marks, outsid
     let size = theme.marker * if joined.is_some() { 0.9 } else { 1.0 };
     chart.canvas.svg.begin(SvgGroup::named(name));
     for place in places.iter().filter(|place| is_inside(place)).flatten() {
-        chart.canvas.draw_elements(marker(page_units(*place), size, look))?;
+        chart.canvas.draw_elements(marker(page_units(*place), size, style))?;
     }
     chart.canvas.svg.end();
     for (x, y) in places.iter().filter(|place| !is_inside(place)).flatten() {
         let edge = (x.clamp(rect.x, rect.right()), y.clamp(rect.y, rect.bottom()));
         let direction = if edge.1 == *y { ((x - edge.0).signum(), 0.0) } else { (0.0, (y - edge.1).signum()) };
-        chart.canvas.arrow_head(edge, direction, 0.7 * theme.small_font, look.colour)?;
+        chart.canvas.arrow_head(edge, direction, 0.7 * theme.small_font, style.colour)?;
         outside.marks = true;
     }
     Ok(())
 }
 
-/// Vertical interval with caps at a horizontal place; an end beyond the frame is cut, without cap. Returns its length
-/// in points.
+/// Draws a vertical interval with caps at `x` points from the left of the page; an end beyond the frame is cut, without
+/// cap. Returns its length in points.
 fn interval(chart: &Chart, x: f64, ends: [f64; 2], stroke: Stroke, theme: &Theme) -> PlotResult<f64> {
     let [_, top, _, bottom] = chart.bounds();
     let far = bottom - top;

@@ -2,10 +2,11 @@
 //! a specification, plain data in display units; [`Plot::draw`] draws it.
 
 mod cells;
+mod extents;
 mod layers;
 mod panels;
+mod piles;
 mod point_labels;
-mod reach;
 mod row_layers;
 mod rows;
 mod shared;
@@ -13,8 +14,10 @@ mod side_labels;
 mod zigzag_trial;
 
 pub use cells::{CellMap, MapCell, Outline, Shades};
-pub use panels::{AxisLine, AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Stack, TickRule};
-pub use reach::AxisReach;
+pub use extents::OutlierLimit;
+pub use panels::{
+    AxisLine, AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelGroup, PanelRow, Panels, Pen, TickRule,
+};
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 pub use shared::Reference95;
 pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigZagPlot};
@@ -48,7 +51,7 @@ impl Plot {
         drawn.expect("the backend writes into memory, which does not fail")
     }
 
-    /// Remark under the figure, to be changed; `None` for a zig-zag, whose remark follows from its data.
+    /// Mutable remark under the figure; `None` for a zig-zag, whose remark follows from its data.
     pub fn note(&mut self) -> Option<&mut Option<String>> {
         match self {
             Self::Panels(data) => Some(&mut data.note),
@@ -62,9 +65,10 @@ impl Plot {
     pub fn axis_titles(&self) -> Vec<String> {
         let rulers: Vec<AxisSpec> = match self {
             Self::Panels(data) => {
-                let of =
-                    |stack: &Stack| [stack.x.clone(), stack.rows.iter().map(|row| row.y.clone()).collect()].concat();
-                data.stacks.iter().flat_map(of).collect()
+                let of = |group: &PanelGroup| {
+                    [group.x.clone(), group.rows.iter().map(|row| row.y.clone()).collect()].concat()
+                };
+                data.groups.iter().flat_map(of).collect()
             }
             Self::Rows(data) => data.columns.iter().map(|column| column.x.clone()).collect(),
             Self::Cells(_) => Vec::new(),

@@ -2,7 +2,7 @@
 //! columns if they share both, as small multiples if all are alike, side by side if they share none. A figure is data;
 //! [`super::layers`] draws it.
 
-use super::reach::{AxisReach, Extents, MAX_INTERVAL_SHARE};
+use super::extents::{Extents, MAX_INTERVAL_SHARE, OutlierLimit};
 use super::shared::{Reference95, record_symbol};
 pub use crate::axis::TickRule;
 
@@ -13,7 +13,7 @@ use crate::canvas::Stroke;
 use crate::curve::PlotCurve;
 use crate::legend::LegendSymbol;
 use crate::markup::symbol;
-use crate::palette::{CurveOrigin, Dash, HEADING, Look, SOLID};
+use crate::palette::{CurveOrigin, CurveStyle, Dash, HEADING, SOLID};
 use crate::theme::Theme;
 
 /// Specification of an axis: title with unit, tick rule and limits.
@@ -24,7 +24,7 @@ pub struct AxisSpec {
     /// Rule by which the axis places its ticks.
     pub tick_rule: TickRule,
     /// Limit of the axis against outliers; `None` for an axis over all data.
-    pub reach: Option<AxisReach>,
+    pub outlier_limit: Option<OutlierLimit>,
     /// Names of the values 0, 1, 2, … in place of numbers; empty for a numeric axis.
     pub names: Vec<String>,
 }
@@ -67,15 +67,16 @@ impl AxisSpec {
 
     /// The axis limited to `times` the median extent of the data from a centre; `None` for the median of the data.
     pub fn within(self, times: f64, centre: Option<f64>) -> Self {
-        Self { reach: Some(AxisReach { times, centre, is_symmetric: false }), ..self }
+        Self { outlier_limit: Some(OutlierLimit { times, centre, is_symmetric: false }), ..self }
     }
 
     /// The axis limited to ±`times` the median extent of the data, centred on zero.
     pub fn about_zero(self, times: f64) -> Self {
-        Self { reach: Some(AxisReach { times, centre: Some(0.0), is_symmetric: true }), ..self }
+        Self { outlier_limit: Some(OutlierLimit { times, centre: Some(0.0), is_symmetric: true }), ..self }
     }
 
-    /// The axis over some data with free space at the ends, and whether data are cut.
+    /// The axis over `data`, and whether data are cut. `pad` is the free space at both ends of a linear axis other than
+    /// time, as a share of the range of the data.
     pub(super) fn axis(&self, data: &Extents, pad: f64) -> (Axis, bool) {
         match self.tick_rule {
             _ if !self.names.is_empty() => return (Axis::columns(&self.names), false),
@@ -84,14 +85,14 @@ impl AxisSpec {
                 let (lo, hi) = axis.ends();
                 let is_beyond = |value: f64| value > 0.0 && value.is_finite() && !(lo..=hi).contains(&value);
                 // An interval that is cut ends at the frame without a cap.
-                let layers = data.soft.iter().filter(|(_, room)| *room != MAX_INTERVAL_SHARE);
+                let layers = data.clippable_values.iter().filter(|(_, room)| *room != MAX_INTERVAL_SHARE);
                 return (axis, layers.map(|(value, _)| *value).any(is_beyond));
             }
             TickRule::Percent => return (Axis::linear(-3.0, 103.0, TickRule::Percent), false),
             _ => {}
         }
         let pad = if self.tick_rule == TickRule::Time { 0.0 } else { pad };
-        let (ends, is_cut) = data.ends(self.reach);
+        let (ends, is_cut) = data.ends(self.outlier_limit);
         (Axis::covering(ends.into_iter().flat_map(|(lo, hi)| [lo, hi]), pad, self.tick_rule), is_cut)
     }
 }
@@ -101,7 +102,7 @@ impl AxisSpec {
 pub struct Pen {
     /// Colour of the line.
     pub colour: RGBColor,
-    /// Width, in standard widths.
+    /// Width, as a multiple of the curve width of the theme.
     pub width: f64,
     /// Dash pattern, in line widths.
     pub dash: Dash,
@@ -115,10 +116,10 @@ impl Pen {
         Self { colour, width: 1.0, dash: SOLID, opacity: 1.0 }
     }
 
-    /// Line with colour and dash of an origin.
+    /// Line with the colour and the dash of an origin.
     pub fn from_origin(origin: &CurveOrigin) -> Self {
-        let look = origin.look();
-        Self { dash: look.dash, ..Self::new(look.colour) }
+        let style = origin.style();
+        Self { dash: style.dash, ..Self::new(style.colour) }
     }
 
     /// Thin, pale line for one of many curves.
@@ -126,7 +127,7 @@ impl Pen {
         Self { width: 0.6, opacity: 0.35, ..Self::new(HEADING) }
     }
 
-    /// The line with another width.
+    /// The line with another width, as a multiple of the curve width of the theme.
     pub fn width(self, width: f64) -> Self {
         Self { width, ..self }
     }
@@ -139,8 +140,8 @@ impl Pen {
 /// Marks at the points of a layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Marks {
-    /// Look of the marks.
-    pub look: Look,
+    /// Style of the marks.
+    pub style: CurveStyle,
     /// Intervals of the marks in their order, values of the vertical axis; `None` for a mark without an interval.
     pub intervals: Vec<Option<[f64; 2]>>,
     /// Line that joins the marks; `None` for separate marks.
@@ -173,7 +174,7 @@ pub enum LayerKind {
 /// One layer of a panel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
-    /// Name in the key, where layers of one name are listed once; `None` for a layer that is not listed.
+    /// Name in the legend, where layers of one name are listed once; `None` for a layer that is not listed.
     pub name: Option<String>,
     /// Points of the layer.
     pub curve: PlotCurve,
@@ -181,14 +182,14 @@ pub struct Layer {
     pub kind: LayerKind,
     /// Maximum share of the range of all other data by which the layer may widen the axes before it is cut; `None` for
     /// a layer that sets the axes.
-    pub room: Option<f64>,
+    pub max_axis_widening: Option<f64>,
 }
 
 impl Layer {
     /// Layer that sets the axes.
     pub fn new(name: impl Into<String>, curve: PlotCurve, kind: LayerKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
-        Self { name, curve, kind, room: None }
+        Self { name, curve, kind, max_axis_widening: None }
     }
 
     /// Line through a curve.
@@ -202,17 +203,17 @@ impl Layer {
     }
 
     /// Marks at points, each with abscissa, value and interval.
-    pub fn marks(name: impl Into<String>, look: Look, points: Vec<(f64, f64, Option<[f64; 2]>)>) -> Self {
+    pub fn marks(name: impl Into<String>, style: CurveStyle, points: Vec<(f64, f64, Option<[f64; 2]>)>) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|(x, y, _)| (*x, *y)).unzip();
         let intervals = points.into_iter().map(|(.., interval)| interval).collect();
         Self::new(
             name,
             PlotCurve { x, y },
-            LayerKind::Marks(Marks { look, intervals, joined: None, side_by_side: false }),
+            LayerKind::Marks(Marks { style, intervals, joined: None, side_by_side: false }),
         )
     }
 
-    /// The marks joined by a line.
+    /// The marks joined by a line; a layer of another kind is unchanged.
     pub fn with_line(mut self, pen: Pen) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
             marks.joined = Some(pen);
@@ -220,7 +221,7 @@ impl Layer {
         self
     }
 
-    /// The marks side by side if they would overlap.
+    /// The marks side by side if they would overlap; a layer of another kind is unchanged.
     pub fn side_by_side(mut self) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
             marks.side_by_side = true;
@@ -228,9 +229,9 @@ impl Layer {
         self
     }
 
-    /// Layer that may widen the axes by the share `room` of the range of all other data, and is cut beyond.
-    pub fn within(self, room: f64) -> Self {
-        Self { room: Some(room), ..self }
+    /// Layer that may widen the axes by the share `widening` of the range of all other data, and is cut beyond.
+    pub fn within(self, widening: f64) -> Self {
+        Self { max_axis_widening: Some(widening), ..self }
     }
 
     pub(super) fn curves(&self) -> impl Iterator<Item = &PlotCurve> {
@@ -245,13 +246,13 @@ impl Layer {
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
             LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) => *colour,
             LayerKind::Labels(_) => crate::palette::INK,
-            LayerKind::Marks(marks) => marks.look.colour,
+            LayerKind::Marks(marks) => marks.style.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
     }
 
-    /// Sample in the key, that of a band with the opacity `shade`; `None` for labels, and for a record or ships without
-    /// points.
+    /// Symbol in the legend, that of a band with the opacity `shade`; `None` for labels, and for a record or ships
+    /// without points.
     pub(super) fn legend_symbol(&self, theme: &Theme, shade: f64) -> Option<LegendSymbol> {
         Some(match &self.kind {
             LayerKind::Line(pen) => LegendSymbol::Line(pen.stroke(theme)),
@@ -261,10 +262,10 @@ impl Layer {
             LayerKind::Record if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Record => record_symbol(theme, &self.curve),
             LayerKind::Dots(colour) | LayerKind::Cloud(colour) => LegendSymbol::Dots(*colour),
-            LayerKind::Marks(Marks { look, joined: Some(pen), .. }) => {
-                LegendSymbol::LineAndMarker(pen.stroke(theme), *look)
+            LayerKind::Marks(Marks { style, joined: Some(pen), .. }) => {
+                LegendSymbol::LineAndMarker(pen.stroke(theme), *style)
             }
-            LayerKind::Marks(Marks { look, .. }) => LegendSymbol::Marker(*look),
+            LayerKind::Marks(Marks { style, .. }) => LegendSymbol::Marker(*style),
             LayerKind::Labels(_) => return None,
             LayerKind::Ships(..) if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
@@ -279,11 +280,11 @@ pub struct PanelRow {
     pub y: AxisSpec,
     /// Height, as a share of the width of the figure.
     pub height: f64,
-    /// `true` if there is a line at zero.
+    /// `true` if there is a horizontal line at zero.
     pub zero: bool,
     /// Values on the vertical axis of horizontal dashed lines, such as the limits of white noise.
     pub levels: Vec<f64>,
-    /// Reference value of the results, with its band of chance; `None` without a reference.
+    /// Reference value of the results with its 95 % band; `None` without a reference.
     pub reference: Option<Reference95>,
     /// Shares of the height that are free below and above the data.
     pub room: [f64; 2],
@@ -295,7 +296,7 @@ impl PanelRow {
         Self { y, height, ..Self::default() }
     }
 
-    /// Row of panels with a line at zero.
+    /// Row of panels with a horizontal line at zero.
     pub fn zeroed(y: AxisSpec, height: f64) -> Self {
         Self { zero: true, ..Self::new(y, height) }
     }
@@ -317,35 +318,35 @@ pub struct LayeredPanel {
 pub struct AxisLine {
     /// Value on the axis.
     pub value: f64,
-    /// Name in the key; empty for a line that is not listed.
+    /// Name in the legend; empty for a line that is not listed.
     pub label: String,
 }
 
 /// Panels with common axes.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Stack {
+pub struct PanelGroup {
     /// Horizontal axes, one per column.
     pub x: Vec<AxisSpec>,
-    /// Rows of the stack.
+    /// Rows of the group.
     pub rows: Vec<PanelRow>,
     /// The panels, row by row.
     pub panels: Vec<LayeredPanel>,
-    /// Lines from bottom to top.
-    pub marks: Vec<AxisLine>,
+    /// Vertical lines through all panels.
+    pub vertical_lines: Vec<AxisLine>,
     /// Number of small multiples side by side, all with the first horizontal axis and the first row; `None` for panels
     /// in rows and columns.
     pub columns: Option<usize>,
     /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
     pub is_unbroken: bool,
-    /// `true` if the stack has half the width of the figure; two of them are side by side if there is room.
+    /// `true` if the group has half the width of the figure; two of them are side by side if there is room.
     pub is_half: bool,
-    /// `true` if there is a line at zero from bottom to top.
+    /// `true` if there is a vertical line at zero.
     pub zero: bool,
     /// `true` if a unit has the same length on both axes.
     pub has_equal_scales: bool,
 }
 
-impl Stack {
+impl PanelGroup {
     /// Panels above each other over one horizontal axis.
     pub fn over(x: AxisSpec, rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
         let (rows, layers): (Vec<PanelRow>, Vec<Vec<Layer>>) = rows.into_iter().unzip();
@@ -353,21 +354,21 @@ impl Stack {
         Self { x: vec![x], rows, panels, ..Self::default() }
     }
 
-    /// Panels with one pair of axes, `across` of them side by side.
+    /// Small multiples: panels with the same pair of axes, `across` of them side by side.
     pub fn multiples(across: usize, x: AxisSpec, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
         Self { x: vec![x], rows: vec![row], panels, columns: Some(across), ..Self::default() }
     }
 }
 
-/// Stacks of panels in one figure, with their key and remarks.
+/// Groups of panels in one figure, with their legend and remarks.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panels {
-    /// The stacks, in reading order.
-    pub stacks: Vec<Stack>,
-    /// `true` if names are right of the frame, in place of a key; on a narrow page they are always in the key.
+    /// The groups, in reading order.
+    pub groups: Vec<PanelGroup>,
+    /// `true` if names are right of the frame, in place of a legend; on a narrow page they are always in the legend.
     pub names_aside: bool,
-    /// Texts in the key without a sample, such as numbers.
-    pub key_texts: Vec<String>,
+    /// Texts in the legend without a symbol, such as numbers.
+    pub legend_texts: Vec<String>,
     /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,
     /// Remark that is added if a layer is cut; `None` without a remark.
@@ -377,14 +378,14 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Figure of one stack.
-    pub fn new(stack: Stack) -> Self {
-        Self { stacks: vec![stack], ..Self::default() }
+    /// Figure of one group.
+    pub fn new(group: PanelGroup) -> Self {
+        Self { groups: vec![group], ..Self::default() }
     }
 
     /// Panels above each other over time.
     pub fn over_time(rows: Vec<(PanelRow, Vec<Layer>)>) -> Self {
-        Self::new(Stack::over(AxisSpec::time(), rows))
+        Self::new(PanelGroup::over(AxisSpec::time(), rows))
     }
 }
 

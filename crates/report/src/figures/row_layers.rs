@@ -3,7 +3,8 @@
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
-use super::reach::{Extents, MAX_INTERVAL_SHARE};
+use super::extents::{Extents, MAX_INTERVAL_SHARE};
+use super::piles::{PlacedItem, is_single, spread};
 use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use super::shared::{BEYOND_AXIS_REMARK, Bars, Reference95, zero_stroke};
 use crate::axis::{Axis, TickRule};
@@ -15,15 +16,15 @@ use crate::fonts::{LINE_SPACING, text_width};
 use crate::legend::{LegendEntry, LegendSymbol};
 use crate::lines::wrap;
 use crate::number::significant;
-use crate::palette::{CurveOrigin, GRID, HEADING, INK, Look, PAPER, RECORD};
-use crate::sheet::{AxisSide, Grid, MAX_NAMES_SHARE, Sheet};
+use crate::palette::{CurveOrigin, CurveStyle, GRID, HEADING, INK, PAPER, RECORD};
+use crate::sheet::{Grid, MAX_NAMES_SHARE, Sheet, TitledAxis};
 use crate::theme::Theme;
 
 impl RowItem {
     fn sample(&self, theme: &Theme) -> LegendSymbol {
         match &self.kind {
-            RowKind::Mark(look, ..) | RowKind::Violin(look, ..) => LegendSymbol::Marker(*look),
-            RowKind::Bar(look, _) => LegendSymbol::Line(bar_stroke(look, theme)),
+            RowKind::Mark(style, ..) | RowKind::Violin(style, ..) => LegendSymbol::Marker(*style),
+            RowKind::Bar(style, _) => LegendSymbol::Line(bar_stroke(style, theme)),
             RowKind::Thin(_) => LegendSymbol::Line(Stroke::solid(HEADING, theme.line)),
             RowKind::Range(colour, _) => LegendSymbol::Line(range_stroke(*colour, theme)),
             RowKind::Limit(_) => LegendSymbol::Upright(limit_stroke(theme)),
@@ -35,7 +36,7 @@ impl RowItem {
     fn enter(&self, data: &mut Extents) {
         let ends: Vec<f64> = match &self.kind {
             RowKind::Mark(_, value, interval) => {
-                data.soft.extend(interval.iter().flatten().map(|end| (*end, MAX_INTERVAL_SHARE)));
+                data.clippable_values.extend(interval.iter().flatten().map(|end| (*end, MAX_INTERVAL_SHARE)));
                 vec![*value]
             }
             RowKind::Thin(ends) | RowKind::Range(_, ends) => ends.to_vec(),
@@ -44,12 +45,12 @@ impl RowItem {
             RowKind::Heading => Vec::new(),
             RowKind::Violin(_, _, quantiles) => {
                 // The middle of a distribution has priority over its ends.
-                data.soft.extend([1, 2, 3].map(|place| (quantiles[place], BOXES)));
+                data.clippable_values.extend([1, 2, 3].map(|place| (quantiles[place], BOXES)));
                 vec![quantiles[0], quantiles[4]]
             }
         };
-        match self.soft {
-            true => data.soft.extend(ends.into_iter().map(|end| (end, MAX_INTERVAL_SHARE))),
+        match self.may_be_clipped {
+            true => data.clippable_values.extend(ends.into_iter().map(|end| (end, MAX_INTERVAL_SHARE))),
             false => data.add(ends),
         }
     }
@@ -58,9 +59,9 @@ impl RowItem {
 /// Maximum multiple of the range of all other data by which the quartiles of a distribution may widen an axis.
 const BOXES: f64 = 4.0;
 
-fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
-    let opacity = if look.hollow || look.colour == RECORD { 0.45 } else { 1.0 };
-    Stroke { opacity, ..Stroke::solid(look.colour, 0.9 * theme.tick_font) }
+fn bar_stroke(style: &CurveStyle, theme: &Theme) -> Stroke {
+    let opacity = if style.hollow || style.colour == RECORD { 0.45 } else { 1.0 };
+    Stroke { opacity, ..Stroke::solid(style.colour, 0.9 * theme.tick_font) }
 }
 
 /// Stroke of a limit, thinner than a mark, which stays visible on it.
@@ -83,7 +84,7 @@ const MARGINS: f64 = 2.0;
 /// Maximum share of an axis that is left free for numbers.
 const MAX_ROOM: f64 = 0.5;
 
-/// Opacity of the ground of rows.
+/// Opacity of the background of shaded rows.
 const GROUND: f64 = 0.1;
 
 /// Minimum and maximum height of all rows of a wide figure, as shares of its width.
@@ -99,7 +100,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
     sheet.legend(&entries(data, theme))?;
     let pitch = pitch(data, theme);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
-    let row = (AxisSide::new(Axis::rows(&data.names, 0.6), data.names_title.as_str()), height);
+    let row = (TitledAxis::new(Axis::rows(&data.names, 0.6), data.names_title.as_str()), height);
     let across = match theme.is_narrow() {
         true if data.names.len() <= FEW => 1,
         true => 2,
@@ -110,7 +111,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
     let panel = (theme.width - margin) / across as f64 - MARGINS * theme.label_font;
     let (mut beyond, mut bars) = (false, Bars::default());
     for part in data.columns.chunks(across) {
-        let side = |column| AxisSide::new(axis(column, theme, panel), column.x.title.as_str());
+        let side = |column| TitledAxis::new(axis(column, theme, panel), column.x.title.as_str());
         let columns = part.iter().map(side).collect();
         let charts = sheet.grid(Grid { columns, rows: vec![row.clone()], ..Grid::default() })?;
         for (chart, column) in charts.iter().zip(part) {
@@ -118,7 +119,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
                 let (left, right) = chart.x.ends();
                 chart.rectangle([left, right], [row - 0.5, row + 0.5], HEADING.mix(GROUND))?;
             }
-            beyond |= draw(chart, theme, column, pitch)?;
+            beyond |= draw(chart, theme, column, pitch, line_distance(data, theme))?;
             let lengths = column.rows.iter().flatten().filter_map(|item| bar_length(chart, item));
             lengths.for_each(|length| bars.add(length, theme));
         }
@@ -140,7 +141,8 @@ fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
     let items = || data.columns.iter().flat_map(|column| &column.rows);
     let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, MAX_NAMES_SHARE * theme.width).len());
     let lines = LINE_SPACING * lines.max().unwrap_or(1).max(1) as f64;
-    let stacked = 0.62 * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
+    let line = line_distance(data, theme) / theme.tick_font;
+    let stacked = line * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
     let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
     let usual = (lines + 0.95).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;
     let least = (lines + 0.35).max(stacked - 0.3) * theme.tick_font;
@@ -149,6 +151,14 @@ fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
         true => usual,
         false => usual.min(highest).max(least.min(usual)).max(lowest.min(SPREAD * usual)),
     }
+}
+
+/// Distance of two lines of a row, points; larger if single marks have to be spread.
+fn line_distance(data: &NamedRows, theme: &Theme) -> f64 {
+    let is_spread = |item: &RowItem| item.place == RowPlace::SameLine && is_single(item);
+    let mut rows = data.columns.iter().flat_map(|column| &column.rows);
+    let has_singles = rows.any(|row| row.windows(2).any(|pair| pair.iter().all(is_spread)));
+    theme.tick_font * if has_singles { 1.3 } else { 0.62 }
 }
 
 /// Number of items of a row that are on separate lines below each other.
@@ -183,24 +193,24 @@ fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     // Numbers are right of all data.
     let widest: f64 = number_widths(column, theme).iter().sum();
     let room = (widest / panel).min(MAX_ROOM);
-    let kept = if room > 0.0 { std::mem::take(&mut data.soft) } else { Vec::new() };
+    let kept = if room > 0.0 { std::mem::take(&mut data.clippable_values) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
     data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
     if !column.zero {
         return column.x.axis(&data, 0.06).0.with_room(room);
     }
     // The axis ends at zero if all data are on one side of it.
-    let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
+    let (lo, hi) = data.ends(column.x.outlier_limit).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
     let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
     let hi = if lo == hi { 1.0 } else { hi };
     Axis::linear(lo, hi, TickRule::Decimal).with_room(room)
 }
 
-/// Draws the rows of a column; returns whether data are beyond its axis.
-fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotResult<bool> {
+/// Draws the rows of a column, whose lines are `line_distance` points apart; returns whether data are beyond its axis.
+fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_distance: f64) -> PlotResult<bool> {
     let (left, right) = chart.x.ends();
-    // A ground under every second row groups the marks of a row.
+    // A background under every second row groups the marks of a row.
     for (row, _) in column.rows.iter().enumerate().filter(|(row, items)| stacked(items) > 1 && row % 2 == 1) {
         chart.rectangle([left, right], [row as f64 - 0.5, row as f64 + 0.5], GRID.mix(0.45))?;
     }
@@ -215,14 +225,9 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     }
     let mut beyond = false;
     for (row, items) in column.rows.iter().enumerate() {
-        let mut line = -0.5 * (stacked(items) + 1) as f64;
-        for item in items {
-            line += if item.place == RowPlace::Below { 1.0 } else { 0.0 };
-            let aside = match item.place {
-                RowPlace::Aside(share) => share,
-                RowPlace::Below | RowPlace::Beside => line * 0.62 * theme.tick_font / pitch,
-            };
-            beyond |= draw_item(chart, theme, item, row as f64 + aside, stacked(items) < 2)?;
+        let placed = placed_items(chart, theme, items, row as f64, [pitch, line_distance]);
+        for item in &placed {
+            beyond |= draw_item(chart, theme, item, stacked(items) < 2)?;
         }
     }
     let widths = number_widths(column, theme);
@@ -235,12 +240,12 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     for (row, items) in column.rows.iter().enumerate() {
         let mut right = chart.rect.right() - 0.4 * theme.small_font;
         let y = chart.page_y(row as f64).unwrap_or(f64::NAN);
-        for ((number, look), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
+        for ((number, style), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
             chart.canvas.text_with_halo((right, y), number)?;
             right -= width;
-            if let Some(look) = look.filter(|_| widths.len() > 1) {
+            if let Some(style) = style.filter(|_| widths.len() > 1) {
                 let place = page_units((right + theme.small_font, y));
-                chart.canvas.draw_elements(marker(place, 0.8 * theme.marker, look))?;
+                chart.canvas.draw_elements(marker(place, 0.8 * theme.marker, style))?;
             }
         }
     }
@@ -257,26 +262,50 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64) -> PlotRe
     Ok(beyond)
 }
 
-/// Draws an item at the vertical place `y`, in rows; returns whether it is beyond the axis.
-fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: bool) -> PlotResult<bool> {
+/// Items of a row at their vertical places; rows are `pitch` and lines `line_distance` points apart.
+fn placed_items<'a>(
+    chart: &Chart,
+    theme: &Theme,
+    items: &'a [RowItem],
+    row: f64,
+    [pitch, line_distance]: [f64; 2],
+) -> Vec<PlacedItem<'a>> {
+    let mut line = -0.5 * (stacked(items) + 1) as f64;
+    let mut placed: Vec<PlacedItem> = Vec::with_capacity(items.len());
+    for item in items {
+        line += if item.place == RowPlace::Below { 1.0 } else { 0.0 };
+        let shift = match item.place {
+            RowPlace::Shifted(share) => share,
+            RowPlace::Below | RowPlace::SameLine => line * line_distance / pitch,
+        };
+        placed.push(PlacedItem { item, y: row + shift, radius: theme.marker });
+    }
+    let room = if stacked(items) > 1 { 0.5 * line_distance } else { HALF * pitch };
+    spread(&mut placed, chart, theme, room, pitch);
+    placed
+}
+
+/// Draws an item; returns whether it is beyond the axis.
+fn draw_item(chart: &Chart, theme: &Theme, placed: &PlacedItem, is_alone: bool) -> PlotResult<bool> {
+    let &PlacedItem { item, y, .. } = placed;
     let name = item.name.as_deref();
     let bar =
         |ends: [f64; 2], is_capped: bool, stroke: Stroke| chart.bar(name, &Bar { y, ends, is_capped, stroke }, theme);
     match &item.kind {
-        RowKind::Mark(look, value, interval) => {
-            let of_interval = interval.map(|ends| bar(ends, is_alone, Stroke::solid(look.colour, theme.line)));
+        RowKind::Mark(style, value, interval) => {
+            let of_interval = interval.map(|ends| bar(ends, is_alone, Stroke::solid(style.colour, theme.line)));
             let beyond = of_interval.transpose()?.unwrap_or(false);
-            Ok(mark(chart, theme, item, *value, y, is_alone)? || beyond)
+            Ok(mark(chart, theme, placed, *value, is_alone)? || beyond)
         }
         RowKind::Thin(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
         RowKind::Range(colour, ends) => bar(*ends, false, range_stroke(*colour, theme)),
-        RowKind::Bar(look, value) => bar([0.0, *value], false, bar_stroke(look, theme)),
+        RowKind::Bar(style, value) => bar([0.0, *value], false, bar_stroke(style, theme)),
         RowKind::Limit(value) => {
             chart.line(name, [(*value, y - HALF), (*value, y + HALF)], limit_stroke(theme)).map(|()| false)
         }
         RowKind::Heading => Ok(false),
-        RowKind::Violin(look, density, quantiles) => {
-            let beyond = bar([quantiles[0], quantiles[4]], false, Stroke::solid(look.colour, theme.line))?;
+        RowKind::Violin(style, density, quantiles) => {
+            let beyond = bar([quantiles[0], quantiles[4]], false, Stroke::solid(style.colour, theme.line))?;
             violin(chart, theme, item, y, density, quantiles).map(|()| beyond)
         }
     }
@@ -284,19 +313,20 @@ fn draw_item(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, is_alone: boo
 
 /// Draws a mark; if it is beyond the axis, an arrow instead, with its value if no other item needs the room. Returns
 /// whether it is beyond.
-fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alone: bool) -> PlotResult<bool> {
-    let RowKind::Mark(look, ..) = &item.kind else { return Ok(false) };
-    let place = chart.reach(value.clamp(-f64::MAX, f64::MAX), y);
+fn mark(chart: &Chart, theme: &Theme, placed: &PlacedItem, value: f64, is_alone: bool) -> PlotResult<bool> {
+    let &PlacedItem { item, y, radius } = placed;
+    let RowKind::Mark(style, ..) = &item.kind else { return Ok(false) };
+    let place = chart.unclipped_page_point(value.clamp(-f64::MAX, f64::MAX), y);
     let is_inside = |place: &PagePoint| chart.rect.contains(*place) && place.0 <= chart.data_right() + 0.1;
     let Some((x, height)) = place.filter(|place| !is_inside(place)) else {
-        chart.marker(item.name.as_deref(), value, y, theme.marker, look)?;
+        chart.marker(item.name.as_deref(), value, y, radius, style)?;
         return Ok(false);
     };
     let (edge, side) = if x > chart.rect.x { (chart.data_right(), 1.0) } else { (chart.rect.x, -1.0) };
     let size = 0.65 * theme.small_font;
     let tip = edge - side * 0.2 * theme.small_font;
-    chart.canvas.arrow_head((tip, height), (side, 0.0), size, look.colour)?;
-    if is_alone && !item.soft && value.abs() < f64::MAX {
+    chart.canvas.arrow_head((tip, height), (side, 0.0), size, style.colour)?;
+    if is_alone && !item.may_be_clipped && value.abs() < f64::MAX {
         let anchor = if side > 0.0 { HPos::Right } else { HPos::Left };
         let label = TextLine::new(significant(value, 3), theme.small_font, anchor);
         chart.canvas.text_with_halo((tip - side * 1.3 * size, height), &label)?;
@@ -304,11 +334,11 @@ fn mark(chart: &Chart, theme: &Theme, item: &RowItem, value: f64, y: f64, is_alo
     Ok(true)
 }
 
-/// Numbers of a row, each with the look of its mark.
-fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a Look>)> {
+/// Numbers of a row, each with the style of its mark.
+fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a CurveStyle>)> {
     let number = |item: &'a RowItem| {
-        let look = if let RowKind::Mark(look, ..) = &item.kind { Some(look) } else { None };
-        Some((TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right), look))
+        let style = if let RowKind::Mark(style, ..) = &item.kind { Some(style) } else { None };
+        Some((TextLine::new(item.number.as_ref()?, theme.small_font, HPos::Right), style))
     };
     items.iter().filter_map(number).collect()
 }
@@ -342,16 +372,16 @@ const HALF: f64 = 0.42;
 /// Draws density, box of the quartiles and median, with the ends of the 95 % interval as numbers next to a violin that
 /// is too narrow to be seen.
 fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64, f64)], q: &[f64; 5]) -> PlotResult {
-    let RowKind::Violin(look, ..) = &item.kind else { return Ok(()) };
+    let RowKind::Violin(style, ..) = &item.kind else { return Ok(()) };
     let name = item.name.as_deref();
     let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
     let drawn = || density.iter().filter(|(value, height)| chart.x.is_plottable(*value) && height.is_finite());
     let edge = |side: f64| drawn().map(move |(value, height)| (*value, y + side * HALF * height / highest));
     if highest > 0.0 {
         let outline: Vec<(f64, f64)> = edge(-1.0).chain(edge(1.0).collect::<Vec<_>>().into_iter().rev()).collect();
-        chart.area(name, outline, look.colour.mix(0.28))?;
+        chart.area(name, outline, style.colour.mix(0.28))?;
     }
-    chart.rectangle([q[1], q[3]], [y - 0.13, y + 0.13], look.colour.mix(0.85))?;
+    chart.rectangle([q[1], q[3]], [y - 0.13, y + 0.13], style.colour.mix(0.85))?;
     let Some((middle, height)) = chart.inside(q[2], y) else { return Ok(()) };
     let apart = 1.6 * theme.marker;
     let is_narrow = chart.page_x(q[4]).zip(chart.page_x(q[0])).is_some_and(|(hi, lo)| hi - lo < 2.0 * theme.marker);
@@ -360,7 +390,7 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
         let text = TextLine::new(ends, theme.small_font, HPos::Left);
         beside(chart, [middle - apart, middle + apart], height, &text)?;
     }
-    let median = Look { hollow: true, ..CurveOrigin::Truth.look() };
+    let median = CurveStyle { hollow: true, ..CurveOrigin::Truth.style() };
     chart.marker(None, q[2], y, 0.6 * theme.marker, &median)
 }
 
@@ -371,13 +401,13 @@ mod tests {
 
     #[test]
     fn numbers_are_dark_and_have_room_for_their_marks() {
-        let look = Look { colour: QUIET, ..CurveOrigin::Truth.look() };
-        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", look, 1.0, None) };
+        let style = CurveStyle { colour: QUIET, ..CurveOrigin::Truth.style() };
+        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", style, 1.0, None) };
         let column = |items: usize| RowsColumn { rows: vec![vec![item.clone(); items]], ..RowsColumn::default() };
         let theme = Theme::screen();
         let [single, both] = [1, 2].map(|items| number_widths(&column(items), &theme));
         assert!(both.len() == 2 && both[0] > single[0]);
-        let is_dark = |(number, own): (TextLine, Option<&Look>)| number.colour == INK && own == Some(&look);
+        let is_dark = |(number, own): (TextLine, Option<&CurveStyle>)| number.colour == INK && own == Some(&style);
         assert!(numbers(&column(2).rows[0], &theme).into_iter().all(is_dark));
     }
 }

@@ -5,50 +5,50 @@ use plotters::style::RGBColor;
 
 use super::panels::{AxisSpec, Pen};
 use super::shared::Reference95;
-use crate::palette::Look;
+use crate::palette::CurveStyle;
 
 /// Content of a row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowKind {
     /// Mark at a value, and its interval as a bar; `None` without an interval. An infinite value is an arrow at the
     /// edge.
-    Mark(Look, f64, Option<[f64; 2]>),
-    /// Thin interval.
+    Mark(CurveStyle, f64, Option<[f64; 2]>),
+    /// Interval as a thin line.
     Thin([f64; 2]),
-    /// Range in a pale colour.
+    /// Interval as a wide bar in a pale colour.
     Range(RGBColor, [f64; 2]),
-    /// Bar from zero.
-    Bar(Look, f64),
-    /// Line from the bottom to the top of the row.
+    /// Bar from zero to a value.
+    Bar(CurveStyle, f64),
+    /// Vertical line at a value, from the bottom to the top of the row.
     Limit(f64),
     /// No value: the name of the row is a heading of the rows below it.
     Heading,
     /// Distribution: value and density, ascending; its quantiles 2.5, 25, 50, 75 and 97.5 %.
-    Violin(Look, Vec<(f64, f64)>, [f64; 5]),
+    Violin(CurveStyle, Vec<(f64, f64)>, [f64; 5]),
 }
 
 /// Place of an item in its row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RowPlace {
     /// Distance below the middle, as a share of the pitch of the rows.
-    Aside(f64),
+    Shifted(f64),
     /// Separate line below the items before it.
     Below,
     /// Line of the item before it.
-    Beside,
+    SameLine,
 }
 
-/// Item of a row: a mark, bar, interval, limit, distribution or heading, with its name in the key.
+/// Item of a row: a mark, bar, interval, limit, distribution or heading, with its name in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowItem {
-    /// Name in the key, where items of one name are listed once; `None` for an item that is not listed.
+    /// Name in the legend, where items of one name are listed once; `None` for an item that is not listed.
     pub name: Option<String>,
     /// Kind of the item.
     pub kind: RowKind,
     /// Place of the item in its row.
     pub place: RowPlace,
     /// `true` if the item may be cut when it leaves the range of all other data by more than that range.
-    pub soft: bool,
+    pub may_be_clipped: bool,
     /// Number written at the right end of the row, after its mark if rows have several numbers; `None` without a
     /// number.
     pub number: Option<String>,
@@ -58,22 +58,22 @@ impl RowItem {
     /// Item in the middle of its row that sets the axis.
     pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
         let name = Some(name.into()).filter(|name| !name.is_empty());
-        Self { name, kind, place: RowPlace::Aside(0.0), soft: false, number: None }
+        Self { name, kind, place: RowPlace::Shifted(0.0), may_be_clipped: false, number: None }
     }
 
-    /// Row that is a heading.
+    /// Items of a row that is a heading.
     pub fn heading() -> Vec<Self> {
         vec![Self::new("", RowKind::Heading)]
     }
 
     /// Mark on a line below the items before it in its row.
-    pub fn mark_below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
-        Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(look, value, interval)) }
+    pub fn mark_below(name: impl Into<String>, style: CurveStyle, value: f64, interval: Option<[f64; 2]>) -> Self {
+        Self { place: RowPlace::Below, ..Self::new(name, RowKind::Mark(style, value, interval)) }
     }
 
     /// Item that is cut where it is far from all other data, so that it cannot stretch the axis.
     pub fn clipped_if_far(self) -> Self {
-        Self { soft: true, ..self }
+        Self { may_be_clipped: true, ..self }
     }
 
     /// `true` if the item has a value and not only an interval, or is a heading, which needs no value.
@@ -93,11 +93,11 @@ pub struct RowsColumn {
     pub x: AxisSpec,
     /// Items of every row.
     pub rows: Vec<Vec<RowItem>>,
-    /// `true` if the axis includes zero, with a line there.
+    /// `true` if the axis includes zero, with a vertical line there; such an axis is linear.
     pub zero: bool,
-    /// Reference value of the results, with its band of chance; `None` without a reference.
+    /// Reference value of the results with its 95 % band; `None` without a reference.
     pub reference: Option<Reference95>,
-    /// Vertical lines across all rows: name in the key, style, value.
+    /// Vertical lines across all rows: name in the legend, style, value.
     pub lines: Vec<(String, Pen, f64)>,
     /// Values that the axis always includes.
     pub included_values: Vec<f64>,
@@ -112,7 +112,7 @@ pub struct NamedRows {
     pub names: Vec<String>,
     /// The columns, side by side.
     pub columns: Vec<RowsColumn>,
-    /// Meaning of a pale ground, and the indices of the rows on it; `None` without such rows.
+    /// Name of the shaded rows in the legend, and their indices; `None` without such rows.
     pub shaded: Option<(String, Vec<usize>)>,
     /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,

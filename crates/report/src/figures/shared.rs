@@ -76,8 +76,8 @@ pub(super) fn record_symbol(theme: &Theme, heading: &PlotCurve) -> LegendSymbol 
     dense(heading, theme).map_or(LegendSymbol::Dots(RECORD), LegendSymbol::Line)
 }
 
-/// Positions of marks, where those nearer than `gap` are spread about their mean: zig-zags of one rudder angle would
-/// otherwise overlap.
+/// Positions of marks, points, where marks nearer than `gap` are spread about their mean: zig-zags of one rudder angle
+/// would otherwise overlap. `None` for a mark that is not on the axis.
 pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
     let mut order: Vec<(usize, f64)> = places.iter().enumerate().filter_map(|(k, at)| Some((k, (*at)?))).collect();
     order.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -91,7 +91,7 @@ pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option
     moved
 }
 
-/// Reference value of results, such as the nominal 95 % of an interval, with the band of chance about it.
+/// Reference value of results, such as the nominal 95 % of an interval, with its 95 % band.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Reference95 {
     /// Reference value.
@@ -111,14 +111,14 @@ impl Reference95 {
         [self.value, self.band[0], self.band[1]]
     }
 
-    /// Draws the reference across a panel, at values of the horizontal axis.
+    /// Draws the reference as a vertical line with its band, at values of the horizontal axis.
     pub(super) fn vertical(&self, chart: &Chart, theme: &Theme) -> PlotResult {
         let (low, high) = chart.y.ends();
         chart.rectangle(self.band, [low, high], RECORD.mix(BAND))?;
         chart.vertical(None, self.value, Stroke::solid(INK, 0.8 * theme.line))
     }
 
-    /// Draws the reference across a panel, at values of the vertical axis.
+    /// Draws the reference as a horizontal line with its band, at values of the vertical axis.
     pub(super) fn horizontal(&self, chart: &Chart, theme: &Theme) -> PlotResult {
         let (left, right) = chart.x.ends();
         chart.rectangle([left, right], self.band, RECORD.mix(BAND))?;

@@ -2,7 +2,7 @@
 
 use plotters::style::text_anchor::HPos;
 
-use super::panels::{Layer, Panels, Stack};
+use super::panels::{Layer, PanelGroup, Panels};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
@@ -20,7 +20,7 @@ fn text(layer: &Layer, theme: &Theme) -> TextLine {
 
 /// Width of the names with the gap to the frame, points.
 pub(super) fn width(data: &Panels, theme: &Theme) -> f64 {
-    let layers = data.stacks.iter().flat_map(|stack| &stack.panels).flat_map(|panel| &panel.layers);
+    let layers = data.groups.iter().flat_map(|group| &group.panels).flat_map(|panel| &panel.layers);
     let named = layers.filter(|layer| data.names_aside && layer.name.is_some());
     let widths = named.map(|layer| text(layer, theme).width());
     widths.reduce(f64::max).map_or(0.0, |width| width + GAP * theme.small_font)
@@ -36,14 +36,14 @@ fn anchor(chart: &Chart, layer: &Layer) -> Option<PagePoint> {
     layer.curve.pairs().filter_map(place).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Writes the names right of the last panel of every row of `count`; returns the names without a point in the frame,
-/// with their numbers.
-pub(super) fn draw(charts: &[Chart], stack: &Stack, count: usize, theme: &Theme) -> PlotResult<Vec<String>> {
+/// Writes the names right of the last panel of every row of `count`; returns the names of the layers without a point in
+/// the frame, with the coordinates of their first point.
+pub(super) fn draw(charts: &[Chart], group: &PanelGroup, count: usize, theme: &Theme) -> PlotResult<Vec<String>> {
     let symbol = |title: &str| title.split(" [").next().unwrap_or_default().replace(is_markup, "");
-    let across = stack.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
+    let across = group.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
     let mut outside = Vec::new();
-    for (index, (chart, panel)) in charts.iter().zip(&stack.panels).enumerate().filter(|(k, _)| (k + 1) % count == 0) {
-        let row = &stack.rows[if stack.columns.is_some() { 0 } else { index / count }];
+    for (index, (chart, panel)) in charts.iter().zip(&group.panels).enumerate().filter(|(k, _)| (k + 1) % count == 0) {
+        let row = &group.rows[if group.columns.is_some() { 0 } else { index / count }];
         for layer in names(chart, theme, &panel.layers)? {
             let (x, y) = layer.curve.pairs().next().unwrap_or((f64::NAN, f64::NAN));
             let (x, y) = (significant(x, 3), significant(y, 3));
@@ -77,7 +77,7 @@ fn names<'a>(chart: &Chart, theme: &Theme, layers: &'a [Layer]) -> PlotResult<Ve
     Ok(outside.into_iter().map(|(layer, _)| layer).collect())
 }
 
-/// Middles of labels of one height, without overlap and near the `wanted` middles, which are in order.
+/// Middles of labels of equal height, without overlap and near the `wanted` middles, which ascend; all in points.
 fn spread(wanted: &[f64], height: f64, [top, bottom]: [f64; 2]) -> Vec<f64> {
     let mut free = top;
     let mut tops: Vec<f64> = Vec::with_capacity(wanted.len());

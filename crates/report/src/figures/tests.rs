@@ -4,7 +4,7 @@
 use super::*;
 use crate::backend::UNITS_PER_POINT;
 use crate::curve::PlotCurve;
-use crate::palette::{self, CurveOrigin, DASHED, HEADING, INK, Look};
+use crate::palette::{self, CurveOrigin, CurveStyle, DASHED, HEADING, INK};
 use crate::{Drawing, Theme};
 
 /// Sine of `n` points with amplitude `size`; the second point is `wild`.
@@ -42,17 +42,17 @@ fn zigzag(n: usize, wild: f64) -> ZigZagPlot {
 
 /// Panels of every layer, small multiples, and a figure with names right of the frame.
 fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
-    let look = CurveOrigin::After.look();
+    let style = CurveOrigin::After.style();
     let points =
         |size: f64| (0..n).map(|k| (k as f64, if k == 1 { wild } else { size }, Some([0.5 * size, wild]))).collect();
     let layers = || {
         vec![
-            Layer::band("95 % band", [wave(n, wild, 0.8), wave(n, 0.1, 1.2)], look.colour, 0.2),
+            Layer::band("95 % band", [wave(n, wild, 0.8), wave(n, 0.1, 1.2)], style.colour, 0.2),
             Layer::new("record", wave(n, 0.2, 1.0), LayerKind::Record),
-            Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(look.colour)),
+            Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(style.colour)),
             Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::from_origin(&CurveOrigin::Before) })
                 .within(0.5),
-            Layer::marks("shares", look, points(0.7)),
+            Layer::marks("shares", style, points(0.7)),
         ]
     };
     let row = |tick_rule| PanelRow {
@@ -60,20 +60,20 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         reference: Some(Reference95 { value: 0.5, band: [0.4, 0.6] }),
         ..PanelRow::zeroed(AxisSpec::new("moment [° rudder]", tick_rule), 0.2)
     };
-    let stack = |tick_rule, is_half| {
-        let mut stack = Stack::over(AxisSpec::new("yaw rate [°/s]", tick_rule), vec![(row(tick_rule), layers())]);
-        stack.panels[0].head = Some("explains 93 %".into());
-        let marks = vec![AxisLine { value: 0.5, label: "period".into() }];
-        Stack { marks, is_half, zero: true, ..stack }
+    let group = |tick_rule, is_half| {
+        let mut group = PanelGroup::over(AxisSpec::new("yaw rate [°/s]", tick_rule), vec![(row(tick_rule), layers())]);
+        group.panels[0].head = Some("explains 93 %".into());
+        let vertical_lines = vec![AxisLine { value: 0.5, label: "period".into() }];
+        PanelGroup { vertical_lines, is_half, zero: true, ..group }
     };
     let layered = Panels {
-        stacks: vec![
-            stack(TickRule::Time, false),
-            stack(TickRule::Decimal, true),
-            stack(TickRule::Logarithmic, true),
-            stack(TickRule::Percent, true),
+        groups: vec![
+            group(TickRule::Time, false),
+            group(TickRule::Decimal, true),
+            group(TickRule::Logarithmic, true),
+            group(TickRule::Percent, true),
         ],
-        key_texts: vec!["R² = 1".into()],
+        legend_texts: vec!["R² = 1".into()],
         clipping_note: Some("Cut.".into()),
         ..Panels::default()
     };
@@ -84,19 +84,19 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             [[0.1, 0.05], [0.05, 0.1]].map(|row| row.map(|v: f64| v * (1 + number) as f64)),
         );
         let layers = vec![
-            Layer::new("", wave(count, wild, 0.4), LayerKind::Cloud(origin.look().colour)),
-            Layer::line("", ellipse, Pen::new(origin.look().colour)),
+            Layer::new("", wave(count, wild, 0.4), LayerKind::Cloud(origin.style().colour)),
+            Layer::line("", ellipse, Pen::new(origin.style().colour)),
         ];
         LayeredPanel { head: Some(origin.label().into()), layers, ..LayeredPanel::default() }
     };
     let ruler = |title: &str| AxisSpec::decimal(title).about_zero(2.2);
-    let clouds = methods().enumerate().map(cloud).collect();
-    let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
+    let t_row = PanelRow::zeroed(ruler("error of T [%]"), 0.24);
+    let clouds = PanelGroup::multiples(3, ruler("error of K [%]"), t_row, methods().enumerate().map(cloud).collect());
     let named = |(number, origin): (usize, CurveOrigin)| {
-        let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
+        let marks = Layer::marks(origin.label(), origin.style(), points(1.0 + number as f64));
         if number % 2 == 0 { marks.with_line(Pen::from_origin(&origin)) } else { marks.side_by_side() }
     };
-    let marks = Stack::over(
+    let marks = PanelGroup::over(
         ruler("noise [°]"),
         vec![(PanelRow { height: 0.3, ..row(TickRule::Logarithmic) }, methods().enumerate().map(named).collect())],
     );
@@ -106,13 +106,13 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         Layer::line("most probable ship", wave(n, 3.0, 250.0), Pen::new(INK)),
         Layer::new("its heading", wave(n.min(2), wild, 250.0), ships),
     ];
-    let track =
-        Stack::over(AxisSpec::decimal("east [m]"), vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), track)]);
+    let northings = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
+    let track = PanelGroup::over(AxisSpec::decimal("east [m]"), vec![(northings, track)]);
     vec![
         ("layers", layered.into()),
         ("clouds", Panels::new(clouds).into()),
         ("aside", Panels { names_aside: true, ..Panels::new(marks) }.into()),
-        ("track", Panels::new(Stack { has_equal_scales: true, ..track }).into()),
+        ("track", Panels::new(PanelGroup { has_equal_scales: true, ..track }).into()),
     ]
 }
 
@@ -121,17 +121,17 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let size = |k: usize| if k == 1 { wild } else { 0.1 * (1 + k) as f64 };
     let items = |row: usize| {
         let marks =
-            methods().map(|own| RowItem::mark_below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
-        let look = Look { hollow: row.is_multiple_of(2), ..CurveOrigin::After.look() };
+            methods().map(|own| RowItem::mark_below(own.label(), own.style(), size(row), Some([0.0, 2.0 * size(row)])));
+        let style = CurveStyle { hollow: row.is_multiple_of(2), ..CurveOrigin::After.style() };
         let others = [
             RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).clipped_if_far(),
             RowItem::new("50 %", RowKind::Range(HEADING, [0.1, size(row)])),
-            RowItem { number: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
+            RowItem { number: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(style, size(row))) },
             RowItem::new("limit", RowKind::Limit(size(row))),
             RowItem::new(
                 "",
                 RowKind::Violin(
-                    look,
+                    style,
                     vec![(0.1, 0.0), (size(row), 1.0), (0.5, wild.min(3.0))],
                     [-size(row), -0.1, 0.0, 0.1, 0.2],
                 ),
@@ -163,7 +163,7 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let cell = |x: usize, y: usize, empty: bool| MapCell {
         value: (!empty).then(|| size(x + y)),
         interval: Some([80.0, 95.0]),
-        outline: if x == y { Some(Outline::Right) } else { (x == y + 1).then_some(Outline::Alias) },
+        outline: if x == y { Some(Outline::Correct) } else { (x == y + 1).then_some(Outline::Alias) },
         trials: 0,
     };
     let map = |shades: Shades, count: usize| CellMap {
@@ -392,18 +392,18 @@ fn a_line_leaves_its_panel_where_it_does() {
 fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     let marks = |name: &str, far: f64| {
         let points = vec![(1.0, 0.1, None), (2.0, far, None)];
-        Layer::marks(name, CurveOrigin::After.look(), points).with_line(Pen::new(INK))
+        Layer::marks(name, CurveOrigin::After.style(), points).with_line(Pen::new(INK))
     };
     let row = PanelRow::new(AxisSpec::new("rms error of T [%]", TickRule::Logarithmic), 0.3);
     let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
-    let data = Panels::new(Stack::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
+    let data = Panels::new(PanelGroup::over(AxisSpec::decimal("noise [°]"), vec![(row, layers)]));
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();
     assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
-    let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
+    let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).style(), vec![(k, 160.0 * k, None)]);
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
     let axis = |title: &str| AxisSpec::decimal(title).within(4.0, None);
-    let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
-    let figure = Plot::from(Panels { names_aside: true, ..Panels::new(stack) }).draw("", &Theme::screen());
+    let group = PanelGroup::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
+    let figure = Plot::from(Panels { names_aside: true, ..Panels::new(group) }).draw("", &Theme::screen());
     assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
 }
 
@@ -416,9 +416,9 @@ fn a_metre_is_as_long_on_both_axes_of_a_track() {
             let curve = PlotCurve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>());
             let layers = vec![Layer::line("ship", curve, Pen::new(INK))];
             let rows = vec![(PanelRow::new(AxisSpec::decimal("north [m]"), 0.7), layers)];
-            let stack = Stack { has_equal_scales: true, ..Stack::over(AxisSpec::decimal("east [m]"), rows) };
+            let group = PanelGroup { has_equal_scales: true, ..PanelGroup::over(AxisSpec::decimal("east [m]"), rows) };
             let figure =
-                Plot::from(Panels { clipping_note: Some("Cut.".into()), ..Panels::new(stack) }).draw("", &theme);
+                Plot::from(Panels { clipping_note: Some("Cut.".into()), ..Panels::new(group) }).draw("", &theme);
             let panel = numbers(figure.svg(), "data-panel")[0].split(' ').map(|side| side.parse::<f64>().unwrap());
             let sides: Vec<f64> = panel.skip(2).collect();
             let lengths = ["data-x", "data-y"].map(|axis| {

@@ -6,7 +6,7 @@ use plotters::style::text_anchor::HPos;
 use serde::{Deserialize, Serialize};
 
 use super::layers;
-use super::panels::{AxisLine, AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
+use super::panels::{AxisLine, AxisSpec, Layer, LayerKind, PanelGroup, PanelRow, Panels, Pen};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine};
 use crate::chart::Chart;
@@ -14,7 +14,7 @@ use crate::curve::PlotCurve;
 use crate::drawing::Drawing;
 use crate::markup::symbol;
 use crate::number;
-use crate::palette::{CurveOrigin, DIMENSION, HEADING, INK, Look, Marker, RUDDER, SOLID};
+use crate::palette::{CurveOrigin, CurveStyle, DIMENSION, HEADING, INK, Marker, RUDDER, SOLID};
 use crate::theme::Theme;
 
 /// Point of the heading curve.
@@ -79,8 +79,8 @@ pub struct ZigZagPlot {
 /// Maximum number of marked executes: with more, neither lines nor numbers could be distinguished.
 const MAX_MARKED: usize = 60;
 
-const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
-const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
+const EXECUTE: CurveStyle = CurveStyle { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
+const EXTREMUM: CurveStyle = CurveStyle { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
 
 /// Height of the heading panel, as a share of the width.
 const HEIGHT: f64 = 0.36;
@@ -113,9 +113,9 @@ impl ZigZagPlot {
             false => Layer::line(name, self.heading.clone(), Pen::new(HEADING)),
         };
         let truth = |curve: &PlotCurve| Layer::line("truth", curve.clone(), Pen::from_origin(&CurveOrigin::Truth));
-        let marks = |name: &str, look: Look, marks: Vec<&ZigZagMark>| {
+        let marks = |name: &str, style: CurveStyle, marks: Vec<&ZigZagMark>| {
             let points = marks.iter().map(|mark| (mark.t_s, mark.heading_deg, None)).collect();
-            Some(Layer::marks(name, look, points)).filter(|_| !marks.is_empty())
+            Some(Layer::marks(name, style, points)).filter(|_| !marks.is_empty())
         };
         let extrema = self.overshoots.iter().map(|overshoot| &overshoot.extremum).collect();
         let extrema = marks("heading extremum", EXTREMUM, extrema);
@@ -132,8 +132,8 @@ impl ZigZagPlot {
             (PanelRow::new(AxisSpec::rudder(), 0.13), vec![rudder]),
         ];
         let at = |mark: &ZigZagMark| AxisLine { value: mark.t_s, label: String::new() };
-        let marks = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
-        Panels::new(Stack { marks, ..Stack::over(AxisSpec::time(), rows) })
+        let vertical_lines = self.executes.iter().filter(|mark| mark.t_s.is_finite()).map(at).collect();
+        Panels::new(PanelGroup { vertical_lines, ..PanelGroup::over(AxisSpec::time(), rows) })
     }
 
     /// Draws overshoots, times and period. Returns the meaning of overshoots and times, with the times if they do not

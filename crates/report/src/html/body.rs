@@ -16,21 +16,21 @@ pub(super) struct PageHeading {
     pub text: String,
 }
 
-/// Body and its headings in order.
+/// Body of a page as HTML, and its headings in order.
 pub(super) struct Body {
     pub html: String,
     pub headings: Vec<PageHeading>,
 }
 
-/// Beginnings of permitted links; other links become plain text.
+/// Beginnings of permitted addresses on the web; a link with any other scheme leads to `#`.
 const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
 
-/// State while a page is read from top to bottom.
+/// State of the conversion of a page, which is read from top to bottom.
 struct BodyReader<'a, 'm> {
     images: &'a dyn Fn(&str) -> FigureFiles,
     /// Titles of the parts that are closed at first.
     folded: &'a [&'a str],
-    /// Whether such a part is being read, and whether its headline is being read.
+    /// Whether a folded part is being read, and whether its heading is being read.
     fold: (bool, bool),
     /// Remaining size for figures.
     room: SizeBudget,
@@ -48,7 +48,8 @@ struct BodyReader<'a, 'm> {
     cell_end: &'static str,
 }
 
-/// Body of a page.
+/// Body of a page, from its Markdown. `folded` are the titles of the parts that are closed at first; `images` finds the
+/// files of a figure by its stem.
 pub(super) fn from_markdown(markdown: &str, folded: &[&str], images: &dyn Fn(&str) -> FigureFiles) -> Body {
     let events: Vec<Event> =
         Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
@@ -71,7 +72,7 @@ pub(super) fn from_markdown(markdown: &str, folded: &[&str], images: &dyn Fn(&st
     Body { html: text, headings: reader.headings }
 }
 
-/// Text from a place to the end of the element that begins there, and the place after it.
+/// Text of the element that begins at the event `start`, and the index of the event after it.
 fn plain_text(events: &[Event], start: usize) -> (String, usize) {
     let (mut depth, mut text) = (0_usize, String::new());
     for (place, event) in events.iter().enumerate().skip(start) {
@@ -89,7 +90,8 @@ fn plain_text(events: &[Event], start: usize) -> (String, usize) {
     (text, events.len())
 }
 
-/// Text of a paragraph that consists of emphasis alone, and the place after it; `None` for any other event.
+/// Text of a paragraph of emphasis alone that begins at the event `place`, and the index of the event after it; `None`
+/// if no such paragraph begins there.
 fn emphasis(events: &[Event], place: usize) -> Option<(String, usize)> {
     let is_begun = matches!(events.get(place)?, Event::Start(Tag::Paragraph))
         && matches!(events.get(place + 1)?, Event::Start(Tag::Emphasis));
@@ -118,7 +120,7 @@ impl<'m> BodyReader<'_, 'm> {
         self.end_fold();
     }
 
-    /// Ends a part that is closed at first, if one is being read.
+    /// Ends the folded part that is being read, if there is one.
     fn end_fold(&mut self) {
         if std::mem::take(&mut self.fold).0 {
             self.html("</details>\n");
@@ -130,7 +132,8 @@ impl<'m> BodyReader<'_, 'm> {
     }
 
     /// Writes the figure of a paragraph that is only an image, with the emphasised paragraph after it as its caption.
-    /// Returns the place after it; `None` if no paragraph with a PNG next to the page begins at `place`.
+    /// Returns the index of the event after it; `None` if no such paragraph, of a PNG next to the page, begins at
+    /// `place`.
     fn figure(&mut self, events: &[Event], place: usize) -> Option<usize> {
         let (Event::Start(Tag::Paragraph), Event::Start(Tag::Image { dest_url, .. })) =
             (&events[place], events.get(place + 1)?)
@@ -230,7 +233,7 @@ impl<'m> BodyReader<'_, 'm> {
     }
 }
 
-/// Target of a link: an address on the web, or a file next to the page; `#` for any other, such as a script.
+/// Target of a link: an address on the web, or a path, which has no colon; `#` for any other, such as a script.
 fn target(url: &str) -> String {
     let is_link = LINKS.iter().any(|link| url.starts_with(link));
     if is_link || !url.contains(':') { escaped(url) } else { String::from("#") }

@@ -1,6 +1,6 @@
 //! Escaping of text for a page: no text becomes a tag.
 
-/// Text for the body of a page or for a value in double quotes.
+/// Text escaped for the body of a page or for an attribute value in quotes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

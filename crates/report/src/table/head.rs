@@ -31,7 +31,7 @@ impl TableColumn {
     }
 }
 
-/// Columns in the making. The columns added last can be given a unit.
+/// Builder of the columns of a table; a unit applies to the columns that were added last.
 #[derive(Debug, Clone, Default)]
 pub struct TableHead {
     pub(super) columns: Vec<TableColumn>,

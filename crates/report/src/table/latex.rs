@@ -170,7 +170,7 @@ fn table_format<'a>(numbers: impl Iterator<Item = &'a LatexNumber> + Clone) -> S
     format
 }
 
-/// Rules and heading; lines of a heading end above the cells.
+/// Rules and headings; the last line of every heading is next to the cells.
 fn head(set: &[LatexColumn]) -> String {
     let lines = set.iter().map(|column| column.heading.len()).max().unwrap_or(0);
     let mut out = String::from("    \\toprule\n");

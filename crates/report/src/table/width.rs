@@ -18,7 +18,7 @@ pub enum Alignment {
     Decimal,
 }
 
-/// Number of columns of a text.
+/// Width of a text in a terminal, in columns.
 pub(super) fn columns(text: &str) -> usize {
     text.chars().map(of_char).sum()
 }
@@ -37,7 +37,7 @@ fn pad(text: &str, before: usize, after: usize) -> String {
     format!("{}{text}{}", " ".repeat(before), " ".repeat(after))
 }
 
-/// Columns before the first decimal point, as in `12.5 ± 0.1`; without a point, those of the first word.
+/// Width before the first decimal point, as in `12.5 ± 0.1`, in columns; without a point, that of the first word.
 fn before_point(text: &str) -> usize {
     match text.split_once('.') {
         Some((before, _)) => columns(before),

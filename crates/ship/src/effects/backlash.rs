@@ -19,7 +19,7 @@ impl Backlash {
 
     /// Prior mean, standard deviation and maximum of g, rad.
     pub(super) fn prior(records: &RecordScales) -> [f64; 3] {
-        [0.0, 0.12 * records.rudder, 0.5 * records.rudder]
+        [0.0, 0.12 * records.max_rudder, 0.5 * records.max_rudder]
     }
 }
 
@@ -29,7 +29,9 @@ impl Effect for Backlash {
             id: "rudder_deadband",
             form: "backlash",
             equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
-            parameters: &const { [Self::HALF_WIDTH.in_file("backlash-deg", DEGREE, "Half of the width of a backlash.")] },
+            parameters: &const {
+                [Self::HALF_WIDTH.with_scenario_key("backlash-deg", DEGREE, "Half of the width of a backlash.")]
+            },
         }
     }
 

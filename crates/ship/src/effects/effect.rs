@@ -30,7 +30,7 @@ pub struct Parameter {
     /// `true` if the parameter changes sign when port and starboard are exchanged.
     pub odd: bool,
     /// Key in a scenario file; `None` for a parameter that no scenario has.
-    pub file: Option<ScenarioNumber>,
+    pub scenario_number: Option<ScenarioNumber>,
 }
 
 impl Parameter {
@@ -44,7 +44,7 @@ impl Parameter {
         [neutral, typical]: [f64; 2],
         [lowest, highest]: [f64; 2],
     ) -> Self {
-        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, file: None }
+        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, scenario_number: None }
     }
 
     /// Parameter that changes its sign when port and starboard are exchanged.
@@ -52,24 +52,34 @@ impl Parameter {
         Self { odd: true, ..Self::even(names, values, range) }
     }
 
-    /// Required parameter in a scenario file, with its key and the size of its unit in SI.
-    pub(super) const fn in_file(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
-        Self { file: Some(ScenarioNumber { key, unit, meaning, role: NumberConversion::Value, default: None }), ..self }
+    /// Parameter that a scenario file must give: `unit` is the size of the unit of its key in SI, `meaning` its text in
+    /// the reference of keys.
+    pub(super) const fn with_scenario_key(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
+        Self {
+            scenario_number: Some(ScenarioNumber {
+                key,
+                unit,
+                meaning,
+                conversion: NumberConversion::Value,
+                default: None,
+            }),
+            ..self
+        }
     }
 
     /// Parameter with another conversion from the scenario file; unchanged if no scenario has it.
-    pub(super) const fn in_role(self, role: NumberConversion) -> Self {
-        let Some(number) = self.file else { return self };
-        Self { file: Some(ScenarioNumber { role, ..number }), ..self }
+    pub(super) const fn with_conversion(self, conversion: NumberConversion) -> Self {
+        let Some(number) = self.scenario_number else { return self };
+        Self { scenario_number: Some(ScenarioNumber { conversion, ..number }), ..self }
     }
 
     /// Parameter with a default in the scenario file, in the unit of its key; unchanged if no scenario has it.
     pub(super) const fn by_default(self, default: f64) -> Self {
-        let Some(number) = self.file else { return self };
-        Self { file: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
+        let Some(number) = self.scenario_number else { return self };
+        Self { scenario_number: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
     }
 
-    /// `true` if its dimension is unknown.
+    /// `true` if the dimension of the parameter is unknown.
     pub fn has_no_unit(&self) -> bool {
         self.unit == Self::NO_UNIT
     }
@@ -107,9 +117,9 @@ pub struct OperatingPoint<'a, R = f64> {
 /// Factors on a = 1/T and b = K/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseFactors<R = f64> {
-    /// Factor on a.
+    /// Factor on the damping a = 1/T.
     pub damping: R,
-    /// Factor on b.
+    /// Factor on the gain b = K/T.
     pub gain: R,
 }
 
@@ -166,7 +176,7 @@ pub struct Description {
 
 /// Effect that a first-order response lacks. Its equations are in [`EffectEquations`].
 ///
-/// `p` has the values of the parameters.
+/// `p` has the values of the parameters, in the order of [`parameters`](Self::parameters).
 pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
     fn description(&self) -> Description;
@@ -192,8 +202,8 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
     }
 
     /// Keys of the parameters in a scenario file; `None` for a form that no scenario can declare.
-    fn in_file(&self) -> Option<Vec<ScenarioNumber>> {
-        self.parameters().iter().map(|parameter| parameter.file).collect()
+    fn scenario_numbers(&self) -> Option<Vec<ScenarioNumber>> {
+        self.parameters().iter().map(|parameter| parameter.scenario_number).collect()
     }
 
     /// Measured channel that the effect requires; without this channel the effect is zero. `None` if it requires no
@@ -224,7 +234,8 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         Vec::new()
     }
 
-    /// Effect with other constants, as many as before; `None` for an effect without constants.
+    /// Effect with these constants, in the order of [`constants`](Self::constants) and as many; by default, for an
+    /// effect without constants, `None`.
     fn with_constants(&self, _constants: &[f64]) -> Option<Arc<dyn Effect>> {
         None
     }
@@ -240,7 +251,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         false
     }
 
-    /// `true` if a parameter is an instant of the record.
+    /// `true` if a parameter is a time on the clock of the record.
     fn has_instant(&self) -> bool {
         false
     }
@@ -250,7 +261,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         false
     }
 
-    /// `true` if it is random: noise on the observed heading, and no part of the response.
+    /// `true` if the effect is random: noise on the observed heading, and no part of the response.
     fn is_random(&self) -> bool {
         let typical: Vec<f64> = self.parameters().iter().map(|parameter| parameter.typical).collect();
         self.random_heading(&typical).is_some()
@@ -267,7 +278,8 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         f64::INFINITY
     }
 
-    /// Time span, s, in which steps must resolve that time constant.
+    /// First and last time, s, between which steps must resolve [`min_time_constant`](Self::min_time_constant); by
+    /// default all times.
     fn fast_span(&self, _p: &[f64]) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
@@ -275,9 +287,9 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
 
 /// Equations of an effect, for every number type.
 ///
-/// `p` has the values of the parameters, `z` the states.
+/// `p` has the values of the parameters, `z` the states of the effect, `now` the operating point.
 pub trait EffectEquations<R: Real> {
-    /// States on a straight approach.
+    /// Writes the states on a straight approach into `z`; by default zeros.
     fn approach(&self, _p: &[R], _now: &OperatingPoint<R>, z: &mut [R]) {
         z.fill(R::from(0.0));
     }
@@ -292,7 +304,7 @@ pub trait EffectEquations<R: Real> {
         rudder
     }
 
-    /// Rates of the states; `before` is the rudder before this effect, rad.
+    /// Writes the rates of the states into `rate`; `before` is the rudder before this effect, rad.
     fn rates(&self, _p: &[R], _z: &[R], _now: &OperatingPoint<R>, _before: R, _rate: &mut [R]) {}
 
     /// Update of memory that follows no differential equation (backlash), once at the end of every step; `before` is
@@ -339,21 +351,21 @@ impl EffectReal for Tangent {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordScales {
     /// Ship-length time L/U, s; if length or speed is unknown, (K/T)^(−1/2) of the base, which is of the same order.
-    pub time: f64,
-    /// Maximum rudder angle, rad.
-    pub rudder: f64,
-    /// Maximum over the durations of the records, s.
+    pub ship_length_time: f64,
+    /// Maximum rudder angle of all records, rad; at least 0.001 rad.
+    pub max_rudder: f64,
+    /// Duration of the longest record, s.
     pub duration: f64,
-    /// Maximum over the records of the usual time between rows, s.
-    pub spacing: f64,
-    /// Approach speed, m/s; `None` unless all records have a measured speed.
+    /// Longest usual time between two rows of a record, s.
+    pub row_interval: f64,
+    /// Approach speed, m/s, for effects of the measured speed; `None` unless all records have it.
     pub speed: Option<f64>,
-    /// Approach speed, m/s; `None` unless all records have a measured sway velocity.
-    pub sway: Option<f64>,
+    /// Approach speed, m/s, for effects of the measured sway velocity; `None` unless all records have it.
+    pub approach_speed_for_sway: Option<f64>,
     /// Mean square of the relative wind speed, m²/s²; `None` unless all records have it.
-    pub wind_square: Option<f64>,
+    pub mean_square_wind_speed: Option<f64>,
     /// Root mean square of the propeller revolutions, 1/s; `None` unless all records have them and they change.
-    pub propeller: Option<f64>,
+    pub rms_propeller_rate: Option<f64>,
     /// First and last time, s, of the record in which an effect that depends on time would act.
     pub span: [f64; 2],
 }
@@ -371,8 +383,8 @@ pub struct Prior {
     pub highest: f64,
     /// `true` for a shape parameter, which has no meaning if the amplitudes are neutral.
     pub is_shape: bool,
-    /// Index of the parameter of the effect from which this parameter is measured: value and prior are those of the
-    /// difference. `None` for a parameter that is fitted directly.
+    /// Index of the parameter that is subtracted: the fitted value and its prior are those of the difference. `None`
+    /// for a parameter that is fitted directly.
     pub reference: Option<usize>,
 }
 
@@ -394,7 +406,7 @@ impl Prior {
         Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, reference: None }
     }
 
-    /// Prior truncated to another range. If a record sets the upper end below the lower end, the lower end holds.
+    /// Prior truncated to another range. If the upper end lies below the lower end, only the lower end is possible.
     #[must_use]
     pub fn within(self, [lowest, highest]: [f64; 2]) -> Self {
         let highest = highest.max(lowest);
@@ -428,7 +440,7 @@ impl CandidateEffect {
         Self { effect: Arc::new(effect), priors: priors.into() }
     }
 
-    /// Effect of one parameter, with a normal prior about its neutral value.
+    /// Effect with one parameter, and a normal prior about its neutral value; `sd` in the unit of the parameter.
     pub fn with_normal_prior(effect: impl Effect + 'static, sd: f64) -> Self {
         let parameter = &effect.parameters()[0];
         let prior = Prior::normal(parameter, parameter.neutral, sd);

@@ -5,7 +5,7 @@ use super::effect::Parameter;
 /// Parameter t₀ of a step: the instant at which a moment sets in, s.
 pub const ONSET_TIME: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
 
-/// Width w of an edge, in rows.
+/// Width w of an edge, in rows of the record.
 pub const EDGE_ROWS: f64 = 2.0;
 
 /// Distance from an instant, in widths, at which 1 − tanh is 10⁻¹³.

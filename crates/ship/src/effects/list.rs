@@ -66,36 +66,38 @@ pub(super) static LIST: [ListedEffect; 22] = [
     row(["nonlinear_damping", "r³", "T r' + r + n₃ r³ = K (δ + δ_r)"],
         EffectTarget::MOMENT, "-n3_over_T * r * r * r",
         &[Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])
-            .in_file("n3-s2-per-deg2", PER_DEGREE_SQUARED, "+ n3 r³ on the left (Norrbin, Bech).").in_role(OverT)],
-        |records| Some([0.0, 8.0 * records.time, UNBOUNDED])),
+            .with_scenario_key("n3-s2-per-deg2", PER_DEGREE_SQUARED, "+ n3 r³ on the left (Norrbin, Bech).")
+            .with_conversion(OverT)],
+        |records| Some([0.0, 8.0 * records.ship_length_time, UNBOUNDED])),
     row(["nonlinear_damping", "r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)"],
         EffectTarget::MOMENT, "-n2_over_T * r * abs(r)",
         &[Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])
-            .in_file("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.").in_role(OverT)],
+            .with_scenario_key("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.").with_conversion(OverT)],
         |_| Some([0.0, 1.2, UNBOUNDED])),
     row(["nonlinear_damping", "r²", "T r' + r + n₁₁ r² = K (δ + δ_r)"],
         EffectTarget::MOMENT, "-n11_over_T * r * r",
         &[Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])
-            .in_file("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").in_role(OverT)],
+            .with_scenario_key("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.").with_conversion(OverT)],
         |_| Some([0.0, 0.4, UNBOUNDED])),
     // Prior standard deviation: the moment of 0.05 rad of rudder in a beam wind of the root mean square speed.
     weather(["wind_moment", "measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)"],
         "K_over_T * c_w * wind_speed * wind_speed * sin(wind_angle)",
         &[Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])],
-        |records| Some([0.0, 0.05 / records.wind_square?, UNBOUNDED])),
+        |records| Some([0.0, 0.05 / records.mean_square_wind_speed?, UNBOUNDED])),
     // w sin 2(ψ_w − ψ): steady wind of unknown strength and direction. A moderate wind has the moment of 0.025 rad of
     // rudder.
     weather(["wind_moment", "steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)"],
         "K_over_T * (w_c * cos(2 * psi) + w_s * sin(2 * psi))",
         &[Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6])
-            .in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+            .with_scenario_key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
           Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6])
-            .in_file("from-deg", DEGREE, "Direction the wind comes from, clockwise from north.").in_role(Direction)],
+            .with_scenario_key("from-deg", DEGREE, "Direction the wind comes from, clockwise from north.")
+            .with_conversion(Direction)],
         |_| Some([0.0, 0.025, UNBOUNDED])),
     Rust(|| Arc::new(SpeedLoss::Modelled)),
     Rust(|| Arc::new(SpeedLoss::Measured { approach_speed: 1.0 })),
-    Rust(|| Arc::new(SpeedLoss::Inflow { approach_speed: 1.0, approach_rate: 1.0 })),
-    Rust(|| Arc::new(SpeedLoss::Propeller { approach_rate: 1.0 })),
+    Rust(|| Arc::new(SpeedLoss::Inflow { approach_speed: 1.0, approach_revolutions: 1.0 })),
+    Rust(|| Arc::new(SpeedLoss::Propeller { approach_revolutions: 1.0 })),
     Rust(|| Arc::new(SteeringLag::DeadTime)),
     Rust(|| Arc::new(SteeringLag::FirstOrder)),
     // A rudder that loses lift at large angles. Half of sin 2δ, the side force of a rudder whose lift is normal to its
@@ -104,33 +106,34 @@ pub(super) static LIST: [ListedEffect; 22] = [
     row(["rudder_saturation", "stall", "T r' + r = K (δ − c₃ δ³ + δ_r)"],
         EffectTarget::RUDDER, "delta - c3 * delta * delta * delta",
         &[Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])
-            .in_file("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
-        |records| Some([0.0, 0.4, (records.rudder * records.rudder * 3.0).recip()])),
+            .with_scenario_key("c3-per-deg2", PER_DEGREE_SQUARED, "Coefficient c3.")],
+        |records| Some([0.0, 0.4, (records.max_rudder * records.max_rudder * 3.0).recip()])),
     Rust(|| Arc::new(Backlash)),
     // Angles below g have no effect; larger angles act with g subtracted.
     row(["rudder_deadband", "dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)"],
         EffectTarget::RUDDER, "max(abs(delta) - max(g, 0), 0) * (1 - 2 * step(-delta))",
-        &[Backlash::HALF_WIDTH.in_file("dead-band-deg", DEGREE, "Half width of a dead band.")],
+        &[Backlash::HALF_WIDTH.with_scenario_key("dead-band-deg", DEGREE, "Half width of a dead band.")],
         |records| Some(Backlash::prior(records))),
     // The gain is 1 + a to starboard and 1 − a to port.
     row(["port_starboard_asymmetry", "gain by side", "T r' + r = K (δ + a |δ| + δ_r)"],
         EffectTarget::RUDDER, "delta + a * abs(delta)",
         &[Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])
-            .in_file("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
+            .with_scenario_key("gain-share", 1.0,
+                               "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
         |_| Some([0.0, 0.12, UNBOUNDED])),
     // Moment that is even in the yaw rate, and so in the drift that accompanies it. A rudder whose inflow is
     // straightened differently on either side causes it (Yasukawa and Yoshimura 2015, γ_R).
     row(["port_starboard_asymmetry", "moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)"],
         EffectTarget::MOMENT, "K_over_T * c_r * abs(r)",
         &[Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])
-            .in_file("moment-by-drift-s", 1.0,
-                     "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
-        |records| Some([0.0, 0.1 * records.time, UNBOUNDED])),
+            .with_scenario_key("moment-by-drift-s", 1.0,
+                               "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.")],
+        |records| Some([0.0, 0.1 * records.ship_length_time, UNBOUNDED])),
     // The trend starts with the record, which separates it from δ_r.
     weather(["moment_drift", "linear trend", "T r' + r = K (δ + δ_r + m (t − t₀))"],
         "K_over_T * m * (t - start)",
         &[Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])
-            .in_file("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
+            .with_scenario_key("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
         |records| Some([0.0, 0.02 / records.duration, UNBOUNDED])),
     Rust(|| Arc::new(TransientDisturbance::Passing)),
     Rust(|| Arc::new(TransientDisturbance::Lasting { edge: 1.0 })),
@@ -140,7 +143,7 @@ pub(super) static LIST: [ListedEffect; 22] = [
     row(["sway_coupling_measured", "measured sway", "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"],
         EffectTarget::MOMENT, "K_over_T * c_v * (q * v)",
         &[Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])],
-        |records| records.sway.map(|speed| [-3.0 / speed, 1.5 / speed, UNBOUNDED])),
+        |records| records.approach_speed_for_sway.map(|speed| [-3.0 / speed, 1.5 / speed, UNBOUNDED])),
 ];
 
 /// Meanings of the effects that a scenario can add.

@@ -13,12 +13,12 @@ pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 pub struct ScenarioNumber {
     /// Key below the effect; it ends in the unit.
     pub key: &'static str,
-    /// Size of that unit in SI and radians.
+    /// Size of the unit of the key, in SI and radians.
     pub unit: f64,
     /// Meaning, for the reference of keys.
     pub meaning: &'static str,
     /// Conversion from the entry to the parameter.
-    pub role: NumberConversion,
+    pub conversion: NumberConversion,
     /// Default, in the unit of the key; `None` for a required entry.
     pub default: Option<f64>,
 }
@@ -28,7 +28,7 @@ pub struct ScenarioNumber {
 pub enum NumberConversion {
     /// Entry used directly as the parameter.
     Value,
-    /// Entry divided by T: files use T r' + r, models r'.
+    /// Entry divided by T: a file gives the coefficient of T r' + r = …, the parameter is that of r' = ….
     OverT,
     /// Direction ψ_w of the strength in the preceding entry: strength sin 2(ψ_w − ψ), whose components along cos 2ψ and
     /// sin 2ψ are the two parameters.

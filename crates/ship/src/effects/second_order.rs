@@ -16,9 +16,10 @@ pub struct SecondOrder;
 
 #[rustfmt::skip]
 const PARAMETERS: [Parameter; 2] = [
-    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]).in_file("T2-s", 1.0, "Smaller time constant T2."),
+    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0])
+        .with_scenario_key("T2-s", 1.0, "Smaller time constant T2."),
     Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0])
-        .in_file("T3-s", 1.0, "Time constant T3 of the rudder rate."),
+        .with_scenario_key("T3-s", 1.0, "Time constant T3 of the rudder rate."),
 ];
 
 impl Effect for SecondOrder {
@@ -33,8 +34,8 @@ impl Effect for SecondOrder {
 
     /// Priors of T₂ and of T₃ − T₂, which is the amplitude: T₂U/L of hulls is 0.1 to 0.5 and T₃U/L 0.3 to 1.
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
-        let time = records.time;
-        let shortest = PARAMETERS[0].lowest.max(0.1 * records.spacing).max(0.04 * time);
+        let time = records.ship_length_time;
+        let shortest = PARAMETERS[0].lowest.max(0.1 * records.row_interval).max(0.04 * time);
         let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).as_shape();
         let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
         Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))

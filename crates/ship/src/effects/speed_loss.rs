@@ -32,12 +32,12 @@ pub enum SpeedLoss {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
         /// Revolutions n₀ of the approach, 1/s.
-        approach_rate: f64,
+        approach_revolutions: f64,
     },
     /// Rudder inflow from the measured propeller revolutions n: b ~ (n/n₀)^m; unchanged if there are none.
     Propeller {
         /// Revolutions n₀ of the approach, 1/s.
-        approach_rate: f64,
+        approach_revolutions: f64,
     },
 }
 
@@ -49,11 +49,11 @@ impl SpeedLoss {
 #[rustfmt::skip]
 const MODELLED: [Parameter; 3] = [
     Parameter::even(["c_u", "c_u", "s/rad²"], [0.0, 15.0], [0.0, 1e5])
-        .in_file("loss-s-per-deg2", PER_DEGREE_SQUARED, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
+        .with_scenario_key("loss-s-per-deg2", PER_DEGREE_SQUARED, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
     Parameter::even(["T_u", "T_u", "s"], [100.0, 100.0], [1.0, 1e4])
-        .in_file("recovery-s", 1.0, "Time in which the speed comes back."),
+        .with_scenario_key("recovery-s", 1.0, "Time in which the speed comes back."),
     Parameter::even(["m_b", "m_b", "1"], [2.0, 2.0], [0.0, 3.0])
-        .in_file("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
+        .with_scenario_key("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
         .by_default(SpeedLoss::FREE_STREAM[1]),
 ];
 const MEASURED: [Parameter; 2] = [
@@ -95,16 +95,20 @@ impl Effect for SpeedLoss {
         match *self {
             Self::Modelled => Vec::new(),
             Self::Measured { approach_speed } => vec![speed(approach_speed)],
-            Self::Inflow { approach_speed, approach_rate } => vec![speed(approach_speed), rate(approach_rate)],
-            Self::Propeller { approach_rate } => vec![rate(approach_rate)],
+            Self::Inflow { approach_speed, approach_revolutions } => {
+                vec![speed(approach_speed), rate(approach_revolutions)]
+            }
+            Self::Propeller { approach_revolutions } => vec![rate(approach_revolutions)],
         }
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
         Some(Arc::new(match (self, constants) {
             (Self::Measured { .. }, &[approach_speed]) => Self::Measured { approach_speed },
-            (Self::Inflow { .. }, &[approach_speed, approach_rate]) => Self::Inflow { approach_speed, approach_rate },
-            (Self::Propeller { .. }, &[approach_rate]) => Self::Propeller { approach_rate },
+            (Self::Inflow { .. }, &[approach_speed, approach_revolutions]) => {
+                Self::Inflow { approach_speed, approach_revolutions }
+            }
+            (Self::Propeller { .. }, &[approach_revolutions]) => Self::Propeller { approach_revolutions },
             _ => return None,
         }))
     }
@@ -112,8 +116,8 @@ impl Effect for SpeedLoss {
     /// Priors from hulls: loss c_u U/L of 0 ± 1, recovery time T_u U/L of 7 ± 4; with a measured speed, free-stream
     /// share e of 0.5 ± 0.25.
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
-        let time = records.time;
-        let propeller = |mean| match records.propeller {
+        let time = records.ship_length_time;
+        let propeller = |mean| match records.rms_propeller_rate {
             Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
             None => Prior::fixed(0.0),
         };
@@ -128,15 +132,20 @@ impl Effect for SpeedLoss {
             }
             Self::Measured { .. } => None,
             Self::Inflow { .. } => {
-                let inflow =
-                    Self::Inflow { approach_speed: records.speed?, approach_rate: records.propeller.unwrap_or(1.0) };
+                let inflow = Self::Inflow {
+                    approach_speed: records.speed?,
+                    approach_revolutions: records.rms_propeller_rate.unwrap_or(1.0),
+                };
                 let speed = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
                 Some(CandidateEffect::new(inflow, [speed[0], speed[1], propeller(0.5)]))
             }
             Self::Propeller { .. } if records.speed.is_some() => None,
             Self::Propeller { .. } => {
                 let prior = Prior::normal(&PROPELLER[0], Self::FREE_STREAM[1], 1.0);
-                Some(CandidateEffect::new(Self::Propeller { approach_rate: records.propeller? }, [prior]))
+                Some(CandidateEffect::new(
+                    Self::Propeller { approach_revolutions: records.rms_propeller_rate? },
+                    [prior],
+                ))
             }
         }
     }
@@ -199,16 +208,18 @@ impl<R: Real> EffectEquations<R> for SpeedLoss {
                 }
                 None => BaseFactors::unity(),
             },
-            Self::Inflow { approach_speed, approach_rate } => {
+            Self::Inflow { approach_speed, approach_revolutions } => {
                 let change = |measured: Option<f64>, base: f64| measured.map_or(0.0, |value| value / base - 1.0);
-                let (q, n) =
-                    (change(now.measured.speed, *approach_speed), change(now.measured.propeller, *approach_rate));
+                let (q, n) = (
+                    change(now.measured.speed, *approach_speed),
+                    change(now.measured.propeller, *approach_revolutions),
+                );
                 let flow = (p[1] * q + p[2] * n + 1.0).at_least(MIN_SPEED_RATIO);
                 BaseFactors { damping: (p[0] * q + 1.0).at_least(MIN_SPEED_RATIO), gain: flow * flow }
             }
-            Self::Propeller { approach_rate } => match now.measured.propeller {
+            Self::Propeller { approach_revolutions } => match now.measured.propeller {
                 Some(rate) => {
-                    let q = R::from((rate / approach_rate).max(MIN_SPEED_RATIO));
+                    let q = R::from((rate / approach_revolutions).max(MIN_SPEED_RATIO));
                     BaseFactors { damping: R::from(1.0), gain: q.powf(p[0]) }
                 }
                 None => BaseFactors::unity(),

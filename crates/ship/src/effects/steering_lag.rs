@@ -15,12 +15,9 @@ pub enum SteeringLag {
 }
 
 const DEAD_TIME: [Parameter; 1] =
-    [Parameter::even(["tau", "τ", "s"], [0.0, 1.0], [-20.0, 20.0]).in_file("dead-time-s", 1.0, "Dead time.")];
-const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.0, 1.0], [0.0, 30.0]).in_file(
-    "first-order-s",
-    1.0,
-    "Time constant of a first-order lag.",
-)];
+    [Parameter::even(["tau", "τ", "s"], [0.0, 1.0], [-20.0, 20.0]).with_scenario_key("dead-time-s", 1.0, "Dead time.")];
+const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.0, 1.0], [0.0, 30.0])
+    .with_scenario_key("first-order-s", 1.0, "Time constant of a first-order lag.")];
 
 /// Minimum lag, s; a shorter lag is below the resolution of any record and is neglected.
 const MIN_LAG_S: f64 = 0.02;
@@ -35,8 +32,8 @@ impl Effect for SteeringLag {
     }
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
-        let RecordScales { time, spacing, .. } = *records;
-        let sd = 0.1 * time + 0.2 * spacing;
+        let RecordScales { ship_length_time, row_interval, .. } = *records;
+        let sd = 0.1 * ship_length_time + 0.2 * row_interval;
         Some(match self {
             Self::DeadTime => {
                 let longest = (4.0 * sd).min(DEAD_TIME[0].highest);
@@ -45,7 +42,7 @@ impl Effect for SteeringLag {
             Self::FirstOrder => {
                 // A lag below a quarter of the sampling interval is not resolved. If this exceeds the maximum lag,
                 // there is no candidate.
-                let shortest = Some(MIN_LAG_S.max(0.25 * spacing)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
+                let shortest = Some(MIN_LAG_S.max(0.25 * row_interval)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 CandidateEffect::new(
                     *self,
                     [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
@@ -108,15 +105,15 @@ mod tests {
 
     #[test]
     fn a_record_with_long_steps_shows_no_first_order_lag() {
-        let records = |spacing: f64| RecordScales {
-            time: 20.0,
-            rudder: 0.35,
+        let records = |row_interval: f64| RecordScales {
+            ship_length_time: 20.0,
+            max_rudder: 0.35,
             duration: 1e5,
-            spacing,
+            row_interval,
             speed: None,
-            sway: None,
-            wind_square: None,
-            propeller: None,
+            approach_speed_for_sway: None,
+            mean_square_wind_speed: None,
+            rms_propeller_rate: None,
             span: [0.0, 1e5],
         };
         for effect in [SteeringLag::DeadTime, SteeringLag::FirstOrder] {

@@ -25,9 +25,13 @@ pub enum TransientDisturbance {
 const MOMENT: Parameter = Parameter::odd(["m", "m", "rad"], [0.0, 0.03], [-0.6, 0.6]);
 
 const PASSING: [Parameter; 3] = [
-    MOMENT.in_file("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
-    Parameter { key: "t_c", symbol: "t_c", ..ONSET_TIME }.in_file("centre-s", 1.0, "Time of its middle."),
-    Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]).in_file("duration-s", 1.0, "How long it lasts."),
+    MOMENT.with_scenario_key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+    Parameter { key: "t_c", symbol: "t_c", ..ONSET_TIME }.with_scenario_key("centre-s", 1.0, "Time of its middle."),
+    Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]).with_scenario_key(
+        "duration-s",
+        1.0,
+        "How long it lasts.",
+    ),
 ];
 
 const LASTING: [Parameter; 2] = [MOMENT, ONSET_TIME];
@@ -78,17 +82,17 @@ impl Effect for TransientDisturbance {
     }
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
-        let RecordScales { spacing, span: [start, end], .. } = *records;
+        let RecordScales { row_interval, span: [start, end], .. } = *records;
         let duration = end - start;
         let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
             let instant = Prior::uniform([start + END_MARGIN_SHARE * duration, end - END_MARGIN_SHARE * duration]);
-            return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
+            return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * row_interval }, [moment, instant]));
         }
         // The centre stays a quarter of the maximum duration away from both ends, so at least three quarters of every
         // pulse are in the record.
         let margin = MAX_DURATION_SHARE * 0.25 * duration;
-        let range = [(3.0 * spacing).max(0.5), MAX_DURATION_SHARE * duration];
+        let range = [(3.0 * row_interval).max(0.5), MAX_DURATION_SHARE * duration];
         let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(range)];
         Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }

@@ -14,11 +14,11 @@ pub struct WaveHeading;
 #[rustfmt::skip]
 const PARAMETERS: [Parameter; 3] = [
     Parameter::even(["sigma_w", "σ_w", "rad"], [0.0, 7e-3], [0.0, 0.2])
-        .in_file("sd-deg", DEGREE, "Standard deviation of the heading they add."),
+        .with_scenario_key("sd-deg", DEGREE, "Standard deviation of the heading they add."),
     Parameter::even(["omega0", "ω₀", "rad/s"], [0.6, 0.6], [0.02, 20.0])
-        .in_file("frequency-rad-s", 1.0, "Frequency of encounter."),
+        .with_scenario_key("frequency-rad-s", 1.0, "Frequency of encounter."),
     Parameter::even(["zeta", "ζ", "1"], [0.1, 0.1], [0.005, 0.7])
-        .in_file("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
+        .with_scenario_key("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
 ];
 
 impl Effect for WaveHeading {
@@ -31,7 +31,7 @@ impl Effect for WaveHeading {
         }
     }
 
-    /// `None`: wave yaw is not part of the response; it is identified as part of the noise law.
+    /// `None`: wave yaw is not part of the response; it is identified as a part of the noise model.
     fn candidate(&self, _about: &RecordScales) -> Option<CandidateEffect> {
         None
     }

@@ -14,7 +14,8 @@ const STEPS: usize = 50;
 
 impl Response {
     /// Rudder angle (rad) of a steady turn at `yaw_rate` (rad/s) on heading 0, with settled speed and memory; `None` if
-    /// no rudder within 1 rad keeps that rate. Of several (beyond stall), the rudder nearest to amidships.
+    /// no rudder within 1 rad keeps that rate. Of several (beyond stall), the rudder nearest to amidships, to within
+    /// 0.02 rad.
     ///
     /// Because the yaw rate is given and the rudder is the unknown, the unstable branch is included (reversed spiral,
     /// Bech 1968).

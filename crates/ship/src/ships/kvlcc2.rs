@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use super::{KNOT, Ship, ShipModel};
 use crate::vessel::Hull;
-use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
+use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, MmgParameters, Propeller, Rudder, Wake};
 
 const HULL: HullDerivatives = HullDerivatives {
     mx: 0.022,
@@ -61,7 +61,7 @@ const RUDDER: Rudder = Rudder {
 };
 
 /// Parameters at full scale.
-pub const FULL_SCALE: Parameters = Parameters {
+pub const FULL_SCALE: MmgParameters = MmgParameters {
     Lpp: 320.0,
     d: 20.8,
     volume: 312_600.0,
@@ -74,7 +74,7 @@ pub const FULL_SCALE: Parameters = Parameters {
 
 /// Parameters of the 7 m model, with the draught as published; the scale of the ship would give 0.455 m, which
 /// increases the second 10/10 overshoot by 0.2°.
-pub const MODEL_L7: Parameters = Parameters {
+pub const MODEL_L7: MmgParameters = MmgParameters {
     Lpp: 7.0,
     d: 0.46,
     volume: 3.27,
@@ -85,7 +85,7 @@ pub const MODEL_L7: Parameters = Parameters {
     rudder: Rudder { AR: 0.0539, eta: 0.216 / 0.345, ..RUDDER },
 };
 
-fn ship(id: &'static str, name: &'static str, parameters: Parameters, speed: f64, rudder_rate_deg: f64) -> Ship {
+fn ship(id: &'static str, name: &'static str, parameters: MmgParameters, speed: f64, rudder_rate_deg: f64) -> Ship {
     let hull = Mmg::at_speed(parameters, speed).expect("the published set balances thrust and resistance");
     Ship {
         id: id.into(),

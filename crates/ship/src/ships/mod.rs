@@ -1,4 +1,4 @@
-//! Ships of the project, one file each, with a source for every number.
+//! Ships of the project, one file per source of their numbers.
 //!
 //! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees of
 //! freedom. Only parameter sets whose source was seen are included. [`user`] makes ships from the numbers of a user.

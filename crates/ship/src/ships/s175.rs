@@ -26,7 +26,7 @@ const MX: f64 = 0.000_238;
 /// Added mass in sway m_y'.
 const MY: f64 = 0.007_049;
 
-/// Moment of inertia with the added one, I_z' + J_z'.
+/// Moment of inertia and added moment of inertia, I_z' + J_z'.
 const INERTIA: f64 = 0.000_456 + 0.000_419;
 
 /// Coupling of sway and yaw, m_y' α_y', by the centre α_y' = 0.05 of m_y'.
@@ -74,7 +74,7 @@ const XH: f64 = -0.48;
 /// S175 hull at the propeller revolutions of its steady approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContainerHull {
-    /// Tip factor n D, m/s.
+    /// Revolutions times diameter of the propeller, n D, m/s.
     tip: f64,
     /// Slope dN'/dδ on the straight approach.
     rudder_slope: f64,

@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 use super::{KNOT, Ship, ShipModel};
 use crate::vessel::Hull;
-use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
+use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, MmgParameters, Propeller, Rudder, Wake};
 
 /// Parameters; the volume is 0.3877 m³ of a 1:24.5 model.
-pub const PARAMETERS: Parameters = Parameters {
+pub const PARAMETERS: MmgParameters = MmgParameters {
     Lpp: 105.0,
     d: 5.966,
     volume: 5701.565,

@@ -61,7 +61,7 @@ impl Hull for TankerHull {
         PARTICULARS
     }
 
-    /// Accelerations by the source; the disturbance adds the yaw moment N_ccδ c² δ at approach speed.
+    /// Accelerations by the equations of the source; the disturbance adds the yaw moment N_ccδ c² δ at approach speed.
     fn acceleration(&self, [u, v, r]: [f64; 3], input: &Input) -> [f64; 3] {
         let L = PARTICULARS.length;
         let [thrust, cc] = self.thrust_and_stream(u);

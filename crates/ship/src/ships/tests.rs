@@ -17,7 +17,8 @@ fn every_finite(state: &[f64]) -> bool {
     state.iter().all(|x| x.is_finite())
 }
 
-/// Motion at the end of `duration` seconds of approach and rudder held at `delta_deg`, put over at 2.32 deg/s.
+/// State and motion after `duration` seconds from the approach on, with the rudder put over to `delta_deg` at
+/// 2.32 deg/s.
 fn held_rudder(dynamics: &dyn Dynamics, delta_deg: f64, duration: f64, largest_step: f64) -> (Vec<f64>, Motion) {
     let ramp = (delta_deg.abs() / 2.32).max(0.1);
     let rudder = Polyline::new(vec![0.0, ramp], vec![0.0, delta_deg.to_radians()]).expect("a ramp");

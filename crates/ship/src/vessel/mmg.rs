@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use estimation::number::Real;
 use thiserror::Error;
 
-pub use self::parameters::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
+pub use self::parameters::{BySign, HullDerivatives, MmgParameters, Propeller, Rudder, Wake};
 use super::{Hull, MIN_SPEED_SHARE};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
@@ -56,7 +56,7 @@ pub enum MmgError {
 /// MMG hull at constant propeller revolutions, with its steady straight approach.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mmg<R = f64> {
-    parameters: Parameters<R>,
+    parameters: MmgParameters<R>,
     /// Prime mass m' = ∇/(½L²d).
     mass: R,
     /// Moment of mass x_G' m'.
@@ -78,13 +78,13 @@ impl<R: Real> Mmg<R> {
     ///
     /// Fails for parameters that are not positive where required, that leave no positive inertia, or whose thrust
     /// cannot balance the resistance.
-    pub fn at_speed(parameters: Parameters<R>, speed: f64) -> Result<Self, MmgError> {
+    pub fn at_speed(parameters: MmgParameters<R>, speed: f64) -> Result<Self, MmgError> {
         positive("approach speed", speed)?;
         let speed_per_revolution = speed_per_revolution(&parameters)?;
         Self::new(parameters, speed, R::from(speed) / speed_per_revolution)
     }
 
-    fn new(parameters: Parameters<R>, approach_speed: f64, revolutions: R) -> Result<Self, MmgError> {
+    fn new(parameters: MmgParameters<R>, approach_speed: f64, revolutions: R) -> Result<Self, MmgError> {
         let p = &parameters;
         let (L, d) = (p.Lpp, p.d);
         for (symbol, value) in
@@ -115,7 +115,7 @@ impl<R: Real> Mmg<R> {
     }
 
     /// Parameters.
-    pub fn parameters(&self) -> &Parameters<R> {
+    pub fn parameters(&self) -> &MmgParameters<R> {
         &self.parameters
     }
 
@@ -138,6 +138,7 @@ impl<R: Real> Mmg<R> {
     }
 
     /// Thrust coefficient K_T at the advance speed `uP` (m/s) and `revolutions` (1/s).
+    #[inline(always)]
     fn thrust_coefficient(&self, uP: R, revolutions: R) -> R {
         let propeller = &self.parameters.propeller;
         let J = uP / (revolutions * propeller.DP);
@@ -147,6 +148,7 @@ impl<R: Real> Mmg<R> {
 
     /// Longitudinal rudder inflow u_R = ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), m/s, written so that J
     /// = 0 is regular.
+    #[inline(always)]
     fn rudder_inflow(&self, uP: R, revolutions: R) -> R {
         let rudder = &self.parameters.rudder;
         let nD = revolutions * self.parameters.propeller.DP;
@@ -158,6 +160,7 @@ impl<R: Real> Mmg<R> {
     }
 
     /// Wake fraction w_P at the inflow angle β_P.
+    #[inline(always)]
     fn wake(&self, betaP: R) -> R {
         let propeller = &self.parameters.propeller;
         match propeller.wake {
@@ -173,8 +176,10 @@ impl<R: Real> Mmg<R> {
     /// Accelerations (u', v', r') in m/s² and rad/s² at surge u and sway v (m/s), yaw rate (rad/s) and rudder (rad);
     /// `n_ratio` is the propeller rate relative to the approach, and the disturbance (rad) adds the yaw moment (dN/dδ)
     /// δ of the straight approach.
+    #[inline(always)]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder_angle: R, n_ratio: f64, disturbance: f64) -> [R; 3] {
-        let Parameters { Lpp: L, hull, propeller, rudder, .. } = self.parameters;
+        let MmgParameters { Lpp, hull, propeller, rudder, .. } = &self.parameters;
+        let L = *Lpp;
         let revolutions = self.revolutions * n_ratio;
         let rL = r * L;
         let U = u.hypot(v).at_least(MIN_SPEED_SHARE * self.approach_speed);
@@ -244,7 +249,7 @@ fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
 ///
 /// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J. The left side increases from zero,
 /// so for decreasing thrust there is one positive root. Fails if there is none, or if a parameter is not positive.
-fn speed_per_revolution<R: Real>(p: &Parameters<R>) -> Result<R, MmgError> {
+fn speed_per_revolution<R: Real>(p: &MmgParameters<R>) -> Result<R, MmgError> {
     let propeller = &p.propeller;
     let [past_wake, past_hull] = [-propeller.wP0 + 1.0, -propeller.tP + 1.0];
     for (symbol, value) in [

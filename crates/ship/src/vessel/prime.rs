@@ -27,7 +27,7 @@ use nalgebra::{DMatrix, DVector};
 use self::equations::{BIAS_TERM, COMMON_TERMS, CUBIC_TERMS, PolynomialTerm, QUADRATIC_TERMS};
 pub use self::equations::{CalmHull, MAX_PRIME_SPEED, PrimeHull};
 pub use self::wind::wind_accelerations;
-use super::mmg::{Mmg, Parameters};
+use super::mmg::{Mmg, MmgParameters};
 use super::prior::{HullParticulars, HullPrior, hull_prior};
 
 /// Coefficient of a hull model with its normal prior; dimensionless (prime system), δ_r in rad.
@@ -42,7 +42,7 @@ pub struct HullCoefficient {
     /// Prior standard deviation.
     pub sd: f64,
     /// Minimum and maximum valid value; infinite without a bound.
-    pub ends: [f64; 2],
+    pub bounds: [f64; 2],
 }
 
 /// Prior standard deviation of δ_r, rad: 1.7°.
@@ -77,7 +77,7 @@ const FREE: [&str; 23] = [
 ];
 
 /// Bounds, lower and upper, of a free coefficient of the MMG model; infinite without a bound.
-fn ends_of(key: &str) -> [f64; 2] {
+fn bounds_of(key: &str) -> [f64; 2] {
     match key {
         "R0" => [0.002, 0.2],
         "wP0" => [0.0, 0.8],
@@ -125,7 +125,7 @@ pub fn is_frictional(key: &str) -> bool {
     matches!(key, "x0" | "k" | "R0" | "wP0")
 }
 
-/// Equations of a form.
+/// Equations of a [`HullModel`].
 #[derive(Debug, Clone, PartialEq)]
 enum FormEquations {
     /// Polynomial of second order.
@@ -133,18 +133,18 @@ enum FormEquations {
     /// Polynomial of third order.
     Cubic,
     /// MMG model about these parameters, nondimensional (length 1).
-    Mmg(Box<Parameters>),
+    Mmg(Box<MmgParameters>),
 }
 
-/// Form of a hull: its equations, and the normal prior of its coefficients.
+/// Model of a hull: equations of one form (quadratic, cubic or MMG), with the normal prior of the coefficients.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HullForm {
+pub struct HullModel {
     equations: FormEquations,
     coefficients: Vec<HullCoefficient>,
     covariance: DMatrix<f64>,
 }
 
-impl HullForm {
+impl HullModel {
     /// Candidate forms for a ship, with priors from the particulars: the two polynomials, and the MMG model. Without
     /// particulars, or with particulars outside the range of ships, only the polynomials with the priors of any ship.
     pub fn candidates(particulars: Option<&HullParticulars>) -> Vec<Self> {
@@ -172,12 +172,12 @@ impl HullForm {
             }
             let is_valid = values.iter().all(|value| value.is_finite()) && covariance.clone().cholesky().is_some();
             let coefficient =
-                |(place, PolynomialTerm { key, symbol, ends }): (usize, &PolynomialTerm)| HullCoefficient {
+                |(place, PolynomialTerm { key, symbol, bounds }): (usize, &PolynomialTerm)| HullCoefficient {
                     key,
                     symbol,
-                    mean: values[place].clamp(ends[0], ends[1]),
+                    mean: values[place].clamp(bounds[0], bounds[1]),
                     sd: covariance[(place, place)].sqrt(),
-                    ends: *ends,
+                    bounds: *bounds,
                 };
             let coefficients = terms.iter().enumerate().map(coefficient).collect();
             is_valid.then(|| Self { equations, coefficients, covariance }.with_windage(prior))
@@ -194,10 +194,10 @@ impl HullForm {
             symbol: coefficient.formula.symbol,
             mean: coefficient.mean,
             sd: coefficient.sd,
-            ends: ends_of(coefficient.formula.key),
+            bounds: bounds_of(coefficient.formula.key),
         });
-        let PolynomialTerm { key, symbol, ends } = BIAS_TERM;
-        let bias = HullCoefficient { key, symbol, mean: 0.0, sd: RUDDER_BIAS_SD_RAD, ends };
+        let PolynomialTerm { key, symbol, bounds } = BIAS_TERM;
+        let bias = HullCoefficient { key, symbol, mean: 0.0, sd: RUDDER_BIAS_SD_RAD, bounds };
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances =
             DVector::from_iterator(coefficients.len(), coefficients.iter().map(|prior| prior.sd * prior.sd));
@@ -207,11 +207,11 @@ impl HullForm {
 
     /// Form with the wind coefficient Y_w appended.
     fn with_windage(mut self, prior: &HullPrior) -> Self {
-        let PolynomialTerm { key, symbol, ends } = wind::WIND_COEFFICIENT;
+        let PolynomialTerm { key, symbol, bounds } = wind::WIND_COEFFICIENT;
         let ([mean, sd], calm) = (wind::wind_coefficient_prior(&prior.parameters), self.coefficients.len());
         self.covariance = self.covariance.resize(calm + 1, calm + 1, 0.0);
         self.covariance[(calm, calm)] = sd * sd;
-        self.coefficients.push(HullCoefficient { key, symbol, mean, sd, ends });
+        self.coefficients.push(HullCoefficient { key, symbol, mean, sd, bounds });
         self
     }
 
@@ -272,7 +272,7 @@ mod tests {
             }
         }
         for ship in ships {
-            for form in HullForm::candidates(Some(&ship)) {
+            for form in HullModel::candidates(Some(&ship)) {
                 let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
                 let name = form.as_str();
                 assert!(form.covariance().clone().cholesky().is_some(), "{name} {ship:?}");

@@ -15,9 +15,9 @@ pub use self::particulars::{HullParticulars, PARTICULARS, Particular, Particular
 pub use self::formulas::CoefficientFormula;
 use self::formulas::{FORMULAS, Spread};
 use self::particulars::{HullDimensions, RATIOS};
-use super::mmg::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
+use super::mmg::{BySign, HullDerivatives, MmgParameters, Propeller, Rudder, Wake};
 
-/// Prior of one coefficient.
+/// Normal prior of one dimensionless coefficient of an MMG hull.
 #[derive(Debug, Clone, Copy)]
 pub struct CoefficientPrior {
     /// Formula of the mean, with name and source.
@@ -44,18 +44,18 @@ pub struct AssumedParticular {
     pub formula: String,
 }
 
-/// Prior of a hull.
+/// Prior of an MMG hull: its mean, and the spread of its coefficients.
 #[derive(Debug, Clone)]
 pub struct HullPrior {
-    /// Mean hull, for [`super::mmg::Mmg::at_speed`].
-    pub parameters: Parameters,
+    /// Parameters of the mean hull, for [`super::mmg::Mmg::at_speed`].
+    pub parameters: MmgParameters,
     /// Priors of the coefficients.
     pub coefficients: Vec<CoefficientPrior>,
-    /// Assumed particulars.
+    /// Values assumed for particulars that were not given.
     pub assumed: Vec<AssumedParticular>,
     /// Hulls one standard deviation above and below the mean, in every assumed ratio and in every coefficient by the
     /// error of its formula.
-    pub deviations: Vec<[Parameters; 2]>,
+    pub deviations: Vec<[MmgParameters; 2]>,
 }
 
 /// Prior of the hull with these particulars.
@@ -80,7 +80,7 @@ pub fn hull_prior(given: &HullParticulars) -> Result<HullPrior, ParticularsError
         shifted.iter().map(|[above, below]| (0.5 * (value(above) - value(below))).powi(2)).sum()
     };
     let parameters = hull(&form);
-    let mut deviations: Vec<[Parameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
+    let mut deviations: Vec<[MmgParameters; 2]> = shifted.iter().map(|pair| pair.each_ref().map(hull)).collect();
     let coefficient = |formula: &'static CoefficientFormula| {
         let mean = (formula.mean)(&form);
         let sd = match formula.spread {
@@ -101,19 +101,19 @@ pub fn hull_prior(given: &HullParticulars) -> Result<HullPrior, ParticularsError
 }
 
 /// Parameters with one coefficient replaced.
-fn with(mut parameters: Parameters, formula: &CoefficientFormula, value: f64) -> Parameters {
+fn with(mut parameters: MmgParameters, formula: &CoefficientFormula, value: f64) -> MmgParameters {
     *parameters.coefficient_mut(formula.key).expect("every coefficient has its place") = value;
     parameters
 }
 
 /// Hull of these dimensions, by the formulas.
-fn hull(form: &HullDimensions) -> Parameters {
+fn hull(form: &HullDimensions) -> MmgParameters {
     FORMULAS.iter().fold(blank(form), |hull, formula| with(hull, formula, (formula.mean)(form)))
 }
 
 /// Hull of these dimensions whose coefficients are not set.
-fn blank(form: &HullDimensions) -> Parameters {
-    Parameters {
+fn blank(form: &HullDimensions) -> MmgParameters {
+    MmgParameters {
         Lpp: form.L,
         d: form.d,
         volume: form.Cb * form.L * form.B * form.d,

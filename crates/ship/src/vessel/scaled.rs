@@ -11,7 +11,7 @@ use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
 /// Number of steps in the ship-length time L/U₀.
 const STEPS: f64 = 25.0;
 
-/// Hull with three degrees of freedom: states ψ (rad), r (rad/s), u and v (m/s).
+/// Nondimensional hull at the size and speed of a ship, with the states ψ (rad), r (rad/s), u and v (m/s).
 ///
 /// ψ' = r; (u', v', r') follow from the [`PrimeHull`], with the propeller rate and the relative wind, if recorded.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,7 +101,8 @@ const MAX_RUDDER_RAD: f64 = 1.2;
 
 impl ScaledHull {
     /// Rudder (rad) of a steady turn at a yaw rate (rad/s): speed and drift settle while the rudder keeps the rate
-    /// (reversed spiral, Bech 1968), which also finds the unstable branch. `None` if no rudder within 1.2 rad keeps it.
+    /// (reversed spiral, Bech 1968), which also finds the unstable branch. `None` if no rudder within 1.2 rad keeps it,
+    /// or if the search does not converge.
     ///
     /// Implicit Euler steps of growing length, which become Newton steps (pseudo-transient continuation).
     pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
@@ -141,7 +142,7 @@ mod tests {
     use crate::integrate::RungeKutta4;
     use crate::ships::kvlcc2;
     use crate::vessel::mmg::Mmg;
-    use crate::vessel::prime::{CalmHull, HullForm};
+    use crate::vessel::prime::{CalmHull, HullModel};
 
     fn scaled(hull: PrimeHull) -> ScaledHull {
         ScaledHull { hull, length: 320.0, speed: 7.97, propeller: None }
@@ -149,7 +150,7 @@ mod tests {
 
     /// Mean hull of the prior, and KVLCC2.
     fn hulls() -> [ScaledHull; 2] {
-        let form = &HullForm::candidates(None)[0];
+        let form = &HullModel::candidates(None)[0];
         let means: Vec<f64> = form.coefficients().iter().map(|coefficient| coefficient.mean).collect();
         let quadratic = form.with_coefficients(&means).expect("a ship");
         let mmg = Mmg::at_speed(kvlcc2::FULL_SCALE.at_unit_length(), 1.0).expect("a ship");

@@ -67,7 +67,8 @@ const MIN_STEADY_CHANGE: f64 = PI;
 /// The course of the approach is the heading at the execute; the last heading determines the side of the turn. The
 /// heading is interpolated linearly between rows. The steady turn is the part after a heading change of 360°, if it
 /// turns by at least half a circle more; the series should end with the turn. All characteristics are `None` if columns
-/// differ in length, a number in time, heading or track is not finite, or the execute is outside the series.
+/// differ in length or have fewer than two rows, a number in time, heading or track is not finite, or the execute is
+/// outside the series.
 pub fn turning_circle(
     [time, heading, yaw_rate]: [&[f64]; 3],
     [track, velocity]: [&[[f64; 2]]; 2],

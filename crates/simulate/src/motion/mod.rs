@@ -7,7 +7,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | the equations and their coefficients | [`PlanarCoefficients`] |
-//! | coefficients with length and speed | [`Planar`] |
+//! | coefficients with length and speed | [`PlanarModel`] |
 //! | a yaw response with speed and drift | [`PlanarShip`] |
 //! | the track over ground | [`dead_reckoning`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
@@ -27,5 +27,5 @@ mod tests;
 pub use circle::{TurningCircleCharacteristics, dead_reckoning, turning_circle};
 pub use coefficients::{COEFFICIENT_COUNT, COEFFICIENT_SYMBOLS, PlanarCoefficients};
 pub use current::{Current, estimate_current};
-pub use planar::{MotionError, Planar};
+pub use planar::{MotionError, PlanarModel};
 pub use planar_ship::PlanarShip;

@@ -16,7 +16,7 @@ pub struct MotionError {
 
 /// Equations of surge and sway of one ship: coefficients, length and approach speed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Planar {
+pub struct PlanarModel {
     /// Coefficients of the equations, dimensionless.
     pub coefficients: PlanarCoefficients,
     /// Length of the ship L, m.
@@ -25,7 +25,7 @@ pub struct Planar {
     pub approach_speed: f64,
 }
 
-impl Planar {
+impl PlanarModel {
     /// Planar motion of a ship of length `length` (m) and approach speed `approach_speed` (m/s). The coefficients are
     /// clamped to their bounds.
     ///

@@ -2,7 +2,7 @@
 
 use ship::{Dynamics, Input, MeasuredChannels, Motion, Replayable, Response};
 
-use super::planar::Planar;
+use super::planar::PlanarModel;
 
 /// Yaw response completed by surge and sway.
 ///
@@ -14,7 +14,7 @@ pub struct PlanarShip {
     /// Yaw response.
     pub response: Response,
     /// Equations of surge and sway.
-    pub planar: Planar,
+    pub planar: PlanarModel,
 }
 
 impl PlanarShip {

@@ -5,7 +5,7 @@ use ship::first_order::State;
 use ship::integrate::RungeKutta4;
 use ship::{Dynamics, Input};
 
-use super::exposed::ShipInWeather;
+use super::ship_in_weather::ShipInWeather;
 use crate::gear::{RudderPath, Segment};
 use crate::propagate::propagator::{Propagator, acting_segment};
 use crate::sample::Sample;

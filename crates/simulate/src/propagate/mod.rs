@@ -5,11 +5,11 @@
 //! by shortening the step that contains it. A propagator is independent of helm and record.
 
 mod closed_form;
-pub(crate) mod exposed;
 mod integrated;
 mod propagator;
+pub(crate) mod ship_in_weather;
 
 pub(crate) use closed_form::ClosedForm;
-pub(crate) use exposed::ShipInWeather;
 pub(crate) use integrated::Integrated;
 pub(crate) use propagator::{AwaitedHeading, Propagator, RowLimits, has_diverged};
+pub(crate) use ship_in_weather::ShipInWeather;

@@ -10,7 +10,7 @@ use crate::sample::Sample;
 
 /// Motion of a ship through one run.
 pub(crate) trait Propagator {
-    /// Time, s.
+    /// Current time, s.
     fn time(&self) -> f64;
 
     /// Heading and yaw rate at the current time.

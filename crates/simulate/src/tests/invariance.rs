@@ -193,7 +193,7 @@ fn the_record_starts_after_the_execute_and_has_its_rows() {
     // +10 deg minus 1.2 s at 2.5 deg/s.
     assert_abs_diff_eq!(to_deg(simulated.trial.rudder()[0]), 7.0, epsilon = 1e-9);
     assert_eq!(simulated.truth.speed, None);
-    assert!(simulated.trial.noise().heading.is_none());
+    assert!(simulated.trial.noise().heading_sd.is_none());
 }
 
 #[test]

@@ -25,7 +25,7 @@ use crate::documents::{BENCH_FILE, folder_for};
 use crate::options::{CommonOptions, FigureOptions};
 use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
-use crate::views::page_files::{REPORT, write_page};
+use crate::views::page_files::{MARKDOWN_REPORT_FILE, write_page};
 use crate::views::{bench_page, bench_tables};
 
 /// Name of the table with one row for every answer.
@@ -72,10 +72,10 @@ fn task(name: &str) -> Result<BenchTask, String> {
 /// Methods of the caller, each with its label.
 pub type CallerMethods = Vec<(String, Arc<dyn Identifier>)>;
 
-/// Results of a benchmark: runs its missing studies below a folder, or in a temporary one, with `methods_of_caller` in
-/// addition to the methods of the scenarios.
+/// Results of a benchmark, after its missing trials have run below `folder`, or below a temporary folder for `None`.
+/// `methods_of_caller` run in addition to the methods of the scenarios.
 ///
-/// Fails if a scenario is invalid, or if no task remains to be scored.
+/// Fails if a scenario is invalid, if a requested set or method does not exist, or if there is no case to score.
 pub fn run_benchmark(
     request: &BenchRequest,
     seed: Option<u64>,
@@ -90,7 +90,7 @@ pub fn run_benchmark(
     };
     let scenarios = paths.iter().map(|path| Scenario::read(path, seed)).collect::<Result<Vec<Scenario>, _>>()?;
     are_known(&request.sets, scenarios.iter().map(|scenario| scenario.name.as_str()), "--set", "scenario")?;
-    are_known(&request.methods, scenarios.iter().flat_map(Scenario::labels), "--method", "method")?;
+    are_known(&request.methods, scenarios.iter().flat_map(Scenario::method_labels), "--method", "method")?;
     let (mut studies, mut absent) = (Vec::new(), Vec::new());
     for scenario in scenarios.into_iter().filter(|set| request.sets.is_empty() || request.sets.contains(&set.name)) {
         let Some(mut scenario) = scenario.restricted_to_methods(&request.methods) else { continue };
@@ -162,7 +162,7 @@ pub fn write_results(
     let text = write_files(results, folder, theme)?;
     let notes: String =
         results.skipped.iter().map(|record| format!("skipped: {}\n", skipped_record_line(record))).collect();
-    let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
+    let notes = format!("\n{notes}report: {}", folder.path().join(MARKDOWN_REPORT_FILE).display());
     let naming = match results.naming.is_empty() {
         true => String::new(),
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),

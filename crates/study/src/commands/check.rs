@@ -72,7 +72,7 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
         "{}: {}, {}, {} each",
         path.display(),
         counted(scenario.cells.len() as u64, "cell"),
-        counted(scenario.labels().count() as u64, "method"),
+        counted(scenario.method_labels().count() as u64, "method"),
         counted(scenario.replicates, "trial"),
     );
     let mut defaults = scenario.influential_defaults().into_iter();

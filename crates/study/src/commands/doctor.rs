@@ -45,7 +45,7 @@ pub fn run(common: &CommonOptions) -> Result<(), Failure> {
     let mut table = Table::new(TableHead::default().texts(["what", "found"]));
     checks.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
     let checks = checks.into_iter().map(|(name, value)| (name.replace(' ', "_"), value)).collect();
-    reply(common, &DoctorAnswer { found: checks }, common.format.render(&table).trim_end())?;
+    reply(common, &DoctorAnswer { checks }, common.format.render(&table).trim_end())?;
     written
 }
 

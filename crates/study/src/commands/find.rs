@@ -11,7 +11,7 @@ use crate::documents;
 use crate::documents::find::{FindAnswer, ManoeuvreEntry, SearchedLog};
 use crate::documents::log::LogEntry;
 use crate::options::{CommonOptions, FindRequest, Format};
-use crate::records::{expand, open};
+use crate::records::{open_log, record_files};
 use crate::screen;
 use campaign::failure::Failure;
 
@@ -19,7 +19,7 @@ use campaign::failure::Failure;
 ///
 /// Fails if a folder of logs cannot be listed, or if a file is to be joined with several logs.
 fn files(request: &FindRequest) -> Result<Vec<PathBuf>, Failure> {
-    let files = expand(&request.logs)?;
+    let files = record_files(&request.logs)?;
     if files.len() > 1 && !request.with_columns.is_empty() {
         return Err(Failure::input(format!("--with-columns is for one log, but {} are given; give one", files.len())));
     }
@@ -36,7 +36,7 @@ pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<Fin
 }
 
 fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<SearchedLog, Failure> {
-    let log = open(file, request.columns.as_deref(), &request.with_columns, warnings)?;
+    let log = open_log(file, request.columns.as_deref(), &request.with_columns, warnings)?;
     Ok(SearchedLog::from_log(display_path(file), &log, &log.manoeuvres()))
 }
 
@@ -47,7 +47,7 @@ pub fn run(request: &FindRequest, common: &CommonOptions) -> Result<(), Failure>
     let mut warnings = Warnings::default();
     if common.format == Format::Json {
         documents::print_document(&find_answer(request, &mut warnings)?)?;
-        screen::warn_of(common, &warnings.ranked());
+        screen::print_warnings(common, &warnings.ranked());
         return Ok(());
     }
     for file in &files(request)? {
@@ -71,7 +71,7 @@ pub fn run(request: &FindRequest, common: &CommonOptions) -> Result<(), Failure>
         let remarks: String = remarked.map(|entry| format!("{}: {}\n", entry.trial, entry.remarks.join(" "))).collect();
         screen::print_lines(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
-    screen::warn_of(common, &warnings.ranked());
+    screen::print_warnings(common, &warnings.ranked());
     Ok(())
 }
 

@@ -11,9 +11,9 @@ use super::fit_each;
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::{self, FIT_FILE, draws, folder_for_records};
 use crate::options::{CommonOptions, FitRequest};
-use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
+use crate::records::{default_folder, read_for_replay, read_records, repetition_warnings};
 use crate::screen::{self, CommandOutput};
-use crate::views::page_files::{REPORT, write_page};
+use crate::views::page_files::{MARKDOWN_REPORT_FILE, write_page};
 use crate::views::{curve_tables, fit_page};
 use crate::work::earlier_trials::EarlierModel;
 use crate::work::fit::{fit, labelled_methods};
@@ -28,7 +28,7 @@ pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> 
     let methods = labelled_methods(&request.methods, common.seed)?;
     let priors = EarlierModel::from_files(&request.priors)?;
     let mut warnings = Warnings::default();
-    let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
+    let trials = read_records(&request.trials, &request.reading, &mut warnings)?;
     let validation = read_for_replay(&request.validate, &request.reading, &mut warnings)?;
     warnings.extend(repetition_warnings(&trials, &validation));
     let theme = request.style.theme()?;
@@ -75,6 +75,6 @@ fn shortened<'a>(warnings: impl Iterator<Item = &'a Warning>) -> Vec<String> {
     let mut lines: Vec<String> = warnings.map(Warning::to_string).collect();
     let more = lines.len().saturating_sub(MAX_SCREEN_WARNINGS);
     lines.truncate(MAX_SCREEN_WARNINGS);
-    lines.extend((more > 0).then(|| format!("{more} more in {REPORT}")));
+    lines.extend((more > 0).then(|| format!("{more} more in {MARKDOWN_REPORT_FILE}")));
     lines
 }

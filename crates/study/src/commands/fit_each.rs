@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::documents::error::ErrorEntry;
 use crate::documents::fit_each::LogFitEntry;
 use crate::options::{CommonOptions, FitRequest, Format};
-use crate::records::expand;
+use crate::records::record_files;
 use crate::views::fit_each_table;
 use crate::work::fit::labelled_methods;
 use crate::work::fit_each::LogFit;
@@ -20,7 +20,7 @@ const CHUNK_LOGS: usize = 64;
 /// Fails if no log can be read; a single log that cannot be read is a row.
 pub fn run(request: &FitRequest, common: &CommonOptions) -> Result<(), Failure> {
     let methods = labelled_methods(&request.methods, common.seed)?;
-    let files = expand(&request.trials)?;
+    let files = record_files(&request.trials)?;
     let bar = progress::bar("logs", files.len() as u64, common.quiet);
     let fit_of = |file| {
         let fit = LogFit::fit_file(file, &methods, &request.reading);

@@ -13,7 +13,7 @@ use crate::documents;
 use crate::documents::inspect::{ChannelEntry, InspectAnswer};
 use crate::documents::log::LogEntry;
 use crate::options::CommonOptions;
-use crate::records::{open, warning_source};
+use crate::records::{open_log, warning_source};
 use crate::screen::{self, CommandOutput};
 use campaign::failure::Failure;
 
@@ -36,7 +36,7 @@ pub struct InspectRequest {
 /// Fails if the log cannot be read.
 pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failure> {
     let mut warnings = Warnings::default();
-    let log = open(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
+    let log = open_log(&request.log, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
     let file = display_path(&request.log);
     warnings.extend(warning_source(file).attach_to(doubts(log.clone())));
     let answer = InspectAnswer::from_log(file, &log, warnings.ranked());
@@ -47,7 +47,7 @@ pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failu
     screen::print_output(common, &output, &answer.warnings)
 }
 
-/// Warnings of the log read as one record; the reason if it cannot be read so.
+/// Warnings of the log when it is read as a single record; if it cannot be read so, a single warning with the reason.
 fn doubts(log: Log) -> Vec<Warning> {
     let refused =
         |problem: String| vec![WarningCode::Implausible.warning(format!("not usable as one record: {problem}"))];

@@ -67,7 +67,11 @@ pub fn run(request: &ListRequest, common: &CommonOptions) -> Result<(), Failure>
         ListSubject::Sidecar => include_str!("../../templates/list-sidecar.md"),
         ListSubject::Manoeuvres | ListSubject::Sensors | ListSubject::Priors => "",
     };
-    screen::print_lines(&format!("{head}{}", common.format.render(&table).trim_end()))
+    let body = match (what, common.format) {
+        (ListSubject::Keys, Format::Markdown) => keys_by_table(),
+        (_, format) => format.render(&table),
+    };
+    screen::print_lines(&format!("{head}{}", body.trim_end()))
 }
 
 fn identifiers() -> Result<Table, Failure> {
@@ -91,7 +95,8 @@ fn effects() -> Table {
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect.in_file().map(|numbers| numbers.iter().map(|entry| entry.key).collect::<Vec<_>>().join(", "));
+        let numbers = effect.scenario_numbers();
+        let keys = numbers.map(|numbers| numbers.iter().map(|entry| entry.key).collect::<Vec<_>>().join(", "));
         let keys = keys.unwrap_or_else(|| MISSING.to_owned());
         table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
@@ -126,14 +131,37 @@ fn ships() -> Table {
 
 /// Keys of a scenario whose name begins with `part`, listed without that part.
 fn keys_below(part: &str) -> Table {
+    let keys = keys_of_scenario().into_iter().filter(|key| key.key.starts_with(part));
+    key_table(part, &keys.collect::<Vec<_>>())
+}
+
+/// Table of `keys`, each without the prefix `part`.
+fn key_table(part: &str, keys: &[ScenarioKey]) -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "unit", "default", "meaning"]));
-    for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
-        if let Some(key) = key.strip_prefix(part) {
-            // A table shows backquotes as they are.
-            table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
-        }
+    for ScenarioKey { key, unit, default, meaning } in keys {
+        // A table shows backquotes as they are.
+        table.push([key.strip_prefix(part).unwrap_or(key), unit, &default.to_string(), &meaning.replace('`', "")]);
     }
     table
+}
+
+/// Markdown with a heading and a table of keys for every table of a scenario.
+fn keys_by_table() -> String {
+    let keys = keys_of_scenario();
+    let first = |key: &ScenarioKey| key.key.split('.').next().unwrap_or_default().to_owned();
+    let is_in_table = |name: &str| keys.iter().any(|key| key.key.starts_with(&format!("{name}.")));
+    let heading = |key: &ScenarioKey| match first(key) {
+        name if name.ends_with("[]") || is_in_table(&format!("{name}[]")) => {
+            format!("`[[{}]]`", name.trim_end_matches("[]"))
+        }
+        name if is_in_table(&name) => format!("`[{name}]`"),
+        _ => "Outside of tables".to_owned(),
+    };
+    let section = |keys: &[ScenarioKey]| {
+        let table = Format::Markdown.render(&key_table("", keys));
+        format!("## {}\n\n{}\n\n", heading(&keys[0]), table.trim_end())
+    };
+    keys.chunk_by(|key, next| heading(key) == heading(next)).map(section).collect()
 }
 
 /// Names of columns, by channel.
@@ -149,7 +177,7 @@ fn columns() -> Table {
     for channel in Channel::ALL {
         let accepted = channel.accepted_names().replace(" or ", ", ");
         let of_channel = |meaning| matches!(meaning, ColumnMeaning::Channel(held, _) if held == channel);
-        let over_ground = |meaning| channel == Channel::Speed && matches!(meaning, ColumnMeaning::OverGround(_));
+        let over_ground = |meaning| channel == Channel::Speed && matches!(meaning, ColumnMeaning::SpeedOverGround(_));
         let holds = ::document::names::with_blanks(channel.quantity());
         table.push([&holds, &accepted, &usual(&|meaning| of_channel(meaning) || over_ground(meaning))]);
     }
@@ -158,14 +186,14 @@ fn columns() -> Table {
         "",
         &usual(&|meaning| matches!(meaning, ColumnMeaning::Latitude | ColumnMeaning::Longitude)),
     ]);
-    table.push(["course over ground, not used", "", &usual(&|meaning| meaning == ColumnMeaning::Course)]);
+    table.push(["course over ground, not used", "", &usual(&|meaning| meaning == ColumnMeaning::CourseOverGround)]);
     table
 }
 
 fn sidecar() -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "value", "meaning"]));
-    for SidecarKey { key, value, meaning } in sidecar::keys() {
-        table.push([&key, &value, &meaning.replace('`', "")]);
+    for SidecarKey { key, value_kind, meaning } in sidecar::keys() {
+        table.push([&key, &value_kind, &meaning.replace('`', "")]);
     }
     table
 }

@@ -85,7 +85,8 @@ pub fn write_results(
     screen::print_output(common, &output, warnings)
 }
 
-/// Default folder of the results, named after the folder of the model, which has the name of its record.
+/// Default folder of the results, named after the folder of the model, which has the name of its record; after the file
+/// if the model has no folder.
 fn default_folder(model: &Path) -> PathBuf {
     let model = display_path(model);
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -95,7 +96,7 @@ fn default_folder(model: &Path) -> PathBuf {
     PathBuf::from(format!("{name}-predict"))
 }
 
-/// Current estimated from a record.
+/// Current estimated from a record. Fails if the record is no turn of 720° or more with positions.
 fn current_from(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Current, Failure> {
     let records = read_for_replay(std::slice::from_ref(&path.to_owned()), &request.reading(), warnings)?;
     records.first().and_then(turn::estimated_current).ok_or_else(|| {

@@ -17,7 +17,7 @@ use crate::documents::{BENCH_FILE, CURVES_FILE, FIT_FILE, PREDICT_FILE, TRACE_FI
 use crate::options::{CommonOptions, Format, StudyFigureOptions};
 use crate::screen;
 use crate::terminal::Terminal;
-use crate::views::page_files::BROWSER;
+use crate::views::page_files::HTML_REPORT_FILE;
 use crate::views::publish::write_results;
 use crate::views::studies_page;
 
@@ -102,7 +102,7 @@ fn report(stored: &Path, request: &ReportRequest, common: &CommonOptions) -> Res
         }
         () => rebuild(stored, style, common)?,
     }
-    if *open { show(&folder.join(BROWSER)) } else { Ok(()) }
+    if *open { show(&folder.join(HTML_REPORT_FILE)) } else { Ok(()) }
 }
 
 fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &CommonOptions) -> Result<(), Failure> {

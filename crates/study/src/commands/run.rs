@@ -22,7 +22,9 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
     let scenario = Scenario::read(path, common.seed)?;
     if !scenario.unknown_output.is_empty() && !common.quiet {
         let keys = scenario.unknown_output.join(", ");
-        screen::warn(&format!("note: {keys} under [output] is of another version and left out; it decides no row"));
+        screen::print_to_stderr(&format!(
+            "note: {keys} under [output] is of another version and left out; it decides no row"
+        ));
     }
     let theme = request.style.style.theme()?;
     let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name));

@@ -4,7 +4,7 @@ use campaign::benchmark::BenchDocument;
 use campaign::design::Design;
 use campaign::failure::{Failure, OnPath};
 use campaign::manifest::Manifest;
-use campaign::outside_estimates::Trials;
+use campaign::outside_estimates::TrialsDocument;
 use campaign::showcase::Showcase;
 use clap::Args;
 use document::fit::FitDocument;
@@ -38,7 +38,7 @@ pub struct SchemaRequest {
 
 /// Prints the schema.
 pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &CommonOptions) -> Result<(), Failure> {
-    let text = documents::text(&schema(what)).on("describe", Path::new("a schema"))?;
+    let text = documents::to_json(&schema(what)).on("describe", Path::new("a schema"))?;
     screen::print_unescaped(&text)
 }
 
@@ -56,7 +56,7 @@ pub fn schema(what: SchemaSubject) -> Schema {
         SchemaSubject::Cells => of::<Design>(),
         SchemaSubject::Showcase => of::<Vec<Showcase>>(),
         SchemaSubject::Style => read::<Style>(),
-        SchemaSubject::Trials => of::<Trials>(),
+        SchemaSubject::Trials => of::<TrialsDocument>(),
         SchemaSubject::Truth => of::<TruthDocument>(),
         SchemaSubject::Study => answer::<StudyAnswer>(),
         SchemaSubject::Shard => answer::<ShardAnswer>(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::outside_estimates::{self, TRIALS_FILE, Trials};
+use campaign::outside_estimates::{self, TRIALS_FILE, TrialsDocument};
 use campaign::scenario::Scenario;
 use campaign::scenario::name;
 use campaign::shard::default_folder;
@@ -37,7 +37,7 @@ pub struct ScoreRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Description of trials: a scenario and a few keys.
+/// Kind of file that describes trials, with its maximum size.
 const LIST: FileKind = FileKind { name: "a description of trials", max_bytes: 1 << 22 };
 
 /// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` does.
@@ -60,6 +60,8 @@ pub fn run(request: &ScoreRequest, common: &CommonOptions) -> Result<(), Failure
 }
 
 /// Scenario of the answers, with the seed of their trials.
+///
+/// Fails if no scenario is given or found next to the answers, or if it is not that of the trials.
 fn scenario_of(request: &ScoreRequest, common: &CommonOptions) -> Result<Scenario, Failure> {
     let beside = request.answers.with_file_name(TRIALS_FILE);
     let scenario = match &request.scenario {
@@ -76,7 +78,7 @@ fn scenario_of(request: &ScoreRequest, common: &CommonOptions) -> Result<Scenari
         return Scenario::read(scenario, common.seed);
     }
     let text = file::read_text(&beside, LIST).map_err(|error| Failure::in_file(&beside, error))?;
-    let trials: Trials = toml::from_str(&text).map_err(|error| {
+    let trials: TrialsDocument = toml::from_str(&text).map_err(|error| {
         Failure::in_file(&beside, format!("{}; expected what `study simulate` wrote", error.message()))
     })?;
     let scenario = Scenario::read(scenario, Some(common.seed.unwrap_or(trials.seed)))?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
-use campaign::outside_estimates::{TRIALS_FILE, Trials, part_name, record_name};
+use campaign::outside_estimates::{TRIALS_FILE, TrialsDocument, numbered_record_name, record_name};
 use campaign::scenario::Scenario;
 use campaign::shard::TrialId;
 use indicatif::ParallelProgressIterator;
@@ -17,7 +17,7 @@ use crate::documents::answers::SimulateAnswer;
 use crate::options::{CommonOptions, SimulateRequest};
 use crate::progress;
 use crate::views::page_files::run_all;
-use crate::work::simulate::{RecordFiles, simulate_record_files, tasks};
+use crate::work::simulate::{RecordFiles, requested_trials, simulate_record_files};
 
 /// Simulates the requested trials and writes them, with the true values of each.
 ///
@@ -28,7 +28,7 @@ pub fn run(request: &SimulateRequest, common: &CommonOptions) -> Result<(), Fail
     let Some(out) = &common.out else {
         return Err(Failure::input("no output is given; add --out FILE.csv or --out DIR"));
     };
-    let tasks = tasks(&scenario, request)?;
+    let tasks = requested_trials(&scenario, request)?;
     let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].record_count() as u64).sum();
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let (folder, names) = match (is_file, count) {
@@ -62,18 +62,18 @@ pub fn run(request: &SimulateRequest, common: &CommonOptions) -> Result<(), Fail
 fn list(scenario: &Scenario, tasks: &[TrialId], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
     let mut table = Table::new(TableHead::default().texts(["record", "cell", "label", "replicate", "also"]));
     for (task, name) in tasks.iter().zip(names) {
-        let file = |number: usize| format!("{}.csv", part_name(name, number));
+        let file = |number: usize| format!("{}.csv", numbered_record_name(name, number));
         let cell = &scenario.cells[task.cell];
         let also: Vec<String> = (1..cell.record_count()).map(file).collect();
         let (number, replicate) = (task.cell.to_string(), task.replicate.to_string());
         table.push([file(0), number, cell.title(), replicate, also.join(" ")]);
     }
     folder.write("trials.csv", table.to_csv())?;
-    let text = toml::to_string(&Trials::from_scenario(scenario)).on("describe the trials in", folder.path())?;
+    let text = toml::to_string(&TrialsDocument::from_scenario(scenario)).on("describe the trials in", folder.path())?;
     folder.write(TRIALS_FILE, format!("{SCORE}{text}"))
 }
 
-/// First line of the description of the trials.
+/// Comment on the first line of the description of the trials.
 const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials that lie beside this file.\n";
 
 /// Writes the records of a trial, the sidecar of each record that needs one, and the true values.

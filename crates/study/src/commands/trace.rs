@@ -11,7 +11,7 @@ use crate::documents::curves::TraceCurves;
 use crate::documents::{TRACE_FILE, draws, folder_for_records};
 use crate::interrupt;
 use crate::options::{CommonOptions, TraceRequest};
-use crate::records::{default_folder, read_all, read_for_replay, repetition_warnings};
+use crate::records::{default_folder, read_for_replay, read_records, repetition_warnings};
 use crate::screen::{self, CommandOutput};
 use crate::views::page_files::write_page;
 use crate::views::trace_page;
@@ -26,7 +26,7 @@ pub fn run(request: &TraceRequest, common: &CommonOptions) -> Result<(), Failure
     let (theme, settings) = (request.style.theme()?, settings(request)?);
     let priors = EarlierModel::from_files(&request.priors)?;
     let mut warnings = Warnings::default();
-    let trials = withhold_channels(request, read_all(&request.trials, &request.reading, &mut warnings)?);
+    let trials = withhold_channels(request, read_records(&request.trials, &request.reading, &mut warnings)?);
     let validation = withhold_channels(request, read_for_replay(&request.validate, &request.reading, &mut warnings)?);
     warnings.extend(repetition_warnings(&trials, &validation));
     let place = common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace"));

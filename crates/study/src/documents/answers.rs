@@ -130,7 +130,7 @@ pub struct SidecarAnswer {
 pub struct DoctorAnswer {
     /// Results of the checks, by name.
     #[serde(flatten)]
-    pub found: BTreeMap<String, String>,
+    pub checks: BTreeMap<String, String>,
 }
 
 macro_rules! answers {

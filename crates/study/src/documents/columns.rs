@@ -30,7 +30,8 @@ impl CsvColumns {
         [names.join(",")].into_iter().chain((0..rows).map(line)).map(|line| line + "\n").collect()
     }
 
-    /// Columns of a table by name; an empty cell is NaN. `None` if a cell is not a number or a row is short.
+    /// Columns of a table by name; an empty cell is NaN. `None` if the text is empty, a cell is not a number, or a row
+    /// is short.
     pub fn from_csv(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
         let mut lines = text.lines();
         let names: Vec<&str> = lines.next()?.split(',').collect();

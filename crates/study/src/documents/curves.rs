@@ -7,11 +7,11 @@ use std::path::Path;
 
 use ::trace::Innovations;
 use ::trace::comparison::RecordComparison;
-use ::trace::staircase::{StairStep, Staircase};
+use ::trace::inclusion_path::{InclusionPath, InclusionStep};
 use campaign::curves::degrees;
 use campaign::failure::Failure;
 use campaign::scenario::name::slug;
-use document::trace::{RecordEntry, StairEntry, TraceDocument};
+use document::trace::{InclusionStepEntry, RecordEntry, TraceDocument};
 use identify::replay::Replay;
 use ship::angle::{from_deg, to_deg};
 use trial::{Channel, Columns as Channels, RecordOrigin, Trial};
@@ -19,7 +19,7 @@ use trial::{Channel, Columns as Channels, RecordOrigin, Trial};
 use super::columns::CsvColumns;
 use crate::records::unique_names;
 
-/// Record with its replays by both models.
+/// Record with its replays by the base and by the average of the structures.
 pub struct TracedRecord {
     /// The record.
     pub trial: Trial,
@@ -56,7 +56,7 @@ pub fn suffix(names: &[String], number: usize) -> String {
 /// Column prefixes of the base and of the average of the structures.
 const MODELS: [&str; 2] = ["before", "after"];
 
-/// CSV table of a record and its replays.
+/// CSV table of a record and its replays by the base and by the average of the structures; angles in degrees.
 pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     let mut columns = CsvColumns::default();
     columns.push("t_s", trial.time().to_vec());
@@ -81,7 +81,7 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     columns.to_csv()
 }
 
-/// Name of the table of the staircase.
+/// File name of the table of the staircase.
 const STAIRCASE: &str = "staircase.csv";
 
 /// Column name of the residual after a step of the staircase.
@@ -89,20 +89,21 @@ fn column_of(step: usize) -> String {
     format!("step_{step}_residual_deg")
 }
 
-/// Entries of a staircase, and the named table of the residuals of the first record after each step.
-pub fn staircase(staircase: Option<Staircase>) -> (Vec<StairEntry>, Option<(String, String)>) {
-    let Some(staircase) = staircase else { return (Vec::new(), None) };
+/// Document entries of the steps from the base to the model, and file name and CSV text of the table of the residuals
+/// of the first record after each step. Empty and `None` without a staircase.
+pub fn staircase(path: Option<InclusionPath>) -> (Vec<InclusionStepEntry>, Option<(String, String)>) {
+    let Some(path) = path else { return (Vec::new(), None) };
     let mut columns = CsvColumns::default();
-    columns.push("t_s", staircase.time);
-    for (number, step) in staircase.steps.iter().enumerate() {
+    columns.push("t_s", path.time);
+    for (number, step) in path.steps.iter().enumerate() {
         columns.push(column_of(number), degrees(&step.residual));
     }
-    let entry = |step: &StairStep| StairEntry {
+    let entry = |step: &InclusionStep| InclusionStepEntry {
         id: step.term.map(|(id, ..)| id.to_owned()),
         form: step.term.map(|(_, form, _)| form.to_owned()),
         heading_rmse_deg: to_deg(step.rmse),
     };
-    (staircase.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.to_csv())))
+    (path.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.to_csv())))
 }
 
 /// Names of the columns of [`innovations`].
@@ -156,7 +157,7 @@ fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Re
 impl TraceCurves {
     /// Curves of a document, read from the files in its folder.
     ///
-    /// Fails if a file cannot be read.
+    /// Fails if a file cannot be read or is not such a table.
     pub fn read(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
         Self::from_tables(document, |name| {
             let path = folder.join(name);
@@ -164,7 +165,9 @@ impl TraceCurves {
         })
     }
 
-    /// Curves of a document, from tables by file name, each with its path for messages.
+    /// Curves of a document. `table` returns the text of the file of a name, and its path for messages.
+    ///
+    /// Fails as `table` does, or if a text is not such a table.
     pub fn from_tables(
         document: &TraceDocument,
         table: impl Fn(&str) -> Result<(String, String), Failure>,

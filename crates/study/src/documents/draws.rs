@@ -4,27 +4,31 @@ use std::collections::BTreeMap;
 
 use campaign::failure::{Failure, OnPath};
 use campaign::folder::ResultFolder;
-use campaign::parquet_table::{self, Values};
+use campaign::parquet_table::{self, ColumnValues};
 use document::IdentifiedShip;
 use predict::{DrawnEstimate, DrawnParameters, EstimateSampler, PredictDocument};
 
 /// Name of the file with the drawn ships or estimates.
-pub const DRAWS: &str = "draws.parquet";
+pub const DRAWS_FILE: &str = "draws.parquet";
 
 /// Columns of a prediction: number of the ship, its parameters, and its characteristics in every manoeuvre. A cell is
 /// missing if the structure lacks the parameter or the ship the characteristic.
-fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
+fn columns(predicted: &PredictDocument) -> Vec<(String, ColumnValues)> {
     let drawn = &predicted.drawn;
-    let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| Values::Numbers(drawn.iter().map(pick).collect());
-    let texts = |pick: &dyn Fn(&DrawnParameters) -> Option<String>| Values::Texts(drawn.iter().map(pick).collect());
+    let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| ColumnValues::Numbers(drawn.iter().map(pick).collect());
+    let texts =
+        |pick: &dyn Fn(&DrawnParameters) -> Option<String>| ColumnValues::Texts(drawn.iter().map(pick).collect());
     let file = |draw: &DrawnParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
     let parameters = parameter_columns(drawn.iter().map(|ship| &ship.parameters[..]).collect());
     let figures = predicted.manoeuvres.iter().flat_map(|manoeuvre| {
         let name = move |figure: &String| format!("figure.{}.{figure}", manoeuvre.kind);
-        manoeuvre.figures.iter().map(move |(figure, values)| (name(figure), Values::Numbers(values.draws.clone())))
+        manoeuvre
+            .figures
+            .iter()
+            .map(move |(figure, values)| (name(figure), ColumnValues::Numbers(values.draws.clone())))
     });
     [
-        ("draw", Values::Counts((0..drawn.len() as i64).map(Some).collect())),
+        ("draw", ColumnValues::Counts((0..drawn.len() as i64).map(Some).collect())),
         ("model", texts(&file)),
         ("structure", texts(&|draw| Some(draw.structure.clone()))),
         ("weight", numbers(|draw| Some(draw.weight))),
@@ -38,8 +42,8 @@ fn columns(predicted: &PredictDocument) -> Vec<(String, Values)> {
     .collect()
 }
 
-/// One column for every parameter of some rows.
-fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (String, Values)> {
+/// Column of every parameter of the rows; a cell is missing if its row lacks the parameter.
+fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (String, ColumnValues)> {
     let mut columns: BTreeMap<String, Vec<Option<f64>>> = BTreeMap::new();
     for (row, parameters) in rows.iter().enumerate() {
         for (key, value) in *parameters {
@@ -47,10 +51,10 @@ fn parameter_columns(rows: Vec<&[(String, f64)]>) -> impl Iterator<Item = (Strin
             column[row] = Some(*value);
         }
     }
-    columns.into_iter().map(|(name, values)| (name, Values::Numbers(values)))
+    columns.into_iter().map(|(name, values)| (name, ColumnValues::Numbers(values)))
 }
 
-/// One draw from an estimate.
+/// Sample of an estimate: its number from 0, its method, and its parameters.
 struct EstimateRow<'a> {
     number: u32,
     method: &'a str,
@@ -65,15 +69,16 @@ impl EstimateRow<'_> {
     }
 }
 
-/// Columns of estimates: number of the sample, method, K, T and δ_r, and every parameter.
-fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, Values)> {
-    let texts = |of: fn(&EstimateRow) -> String| Values::Texts(rows.iter().map(|row| Some(of(row))).collect());
-    let numbers = |of: fn([f64; 3]) -> f64| Values::Numbers(rows.iter().map(|row| row.number(of)).collect());
+/// Columns of estimates: number of the sample, method, structure, weight, K (1/s), T (s), δ_r (rad), and every
+/// parameter.
+fn estimate_columns(rows: &[EstimateRow]) -> Vec<(String, ColumnValues)> {
+    let texts = |of: fn(&EstimateRow) -> String| ColumnValues::Texts(rows.iter().map(|row| Some(of(row))).collect());
+    let numbers = |of: fn([f64; 3]) -> f64| ColumnValues::Numbers(rows.iter().map(|row| row.number(of)).collect());
     [
-        ("draw", Values::Counts(rows.iter().map(|row| Some(row.number.into())).collect())),
+        ("draw", ColumnValues::Counts(rows.iter().map(|row| Some(row.number.into())).collect())),
         ("method", texts(|row| row.method.to_owned())),
         ("structure", texts(|row| row.drawn.structure.clone())),
-        ("weight", Values::Numbers(rows.iter().map(|row| Some(row.drawn.weight)).collect())),
+        ("weight", ColumnValues::Numbers(rows.iter().map(|row| Some(row.drawn.weight)).collect())),
         ("K_per_s", numbers(|[inverse_t, k_over_t, _]| k_over_t / inverse_t)),
         ("T_s", numbers(|[inverse_t, ..]| 1.0 / inverse_t)),
         ("delta_r_rad", numbers(|[.., bias]| bias)),
@@ -107,7 +112,7 @@ pub fn write_ships(folder: &ResultFolder, predicted: &PredictDocument) -> Result
     keep_columns(folder, columns(predicted))
 }
 
-fn keep_columns(folder: &ResultFolder, columns: Vec<(String, Values)>) -> Result<(), Failure> {
-    let bytes = parquet_table::encode(columns).on("describe", &folder.path().join(DRAWS))?;
-    folder.write(DRAWS, bytes)
+fn keep_columns(folder: &ResultFolder, columns: Vec<(String, ColumnValues)>) -> Result<(), Failure> {
+    let bytes = parquet_table::encode(columns).on("describe", &folder.path().join(DRAWS_FILE))?;
+    folder.write(DRAWS_FILE, bytes)
 }

@@ -39,7 +39,7 @@ impl<'a> ErrorEntry<'a> {
 }
 
 /// Document of a failure in one line. Fails if it cannot be written as JSON.
-pub fn text(failure: &Failure) -> Result<String, serde_json::Error> {
+pub fn to_json_line(failure: &Failure) -> Result<String, serde_json::Error> {
     let exit_code = screen::exit_code(failure.kind);
     let document = ErrorDocument { schema: "error/1", error: ErrorEntry::from_failure(failure), exit_code };
     serde_json::to_string(&document)

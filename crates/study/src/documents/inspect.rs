@@ -45,7 +45,7 @@ pub struct ChannelEntry {
     pub longest_gap_s: Option<f64>,
     /// Beginning of the longest gap.
     pub longest_gap_from_s: Option<f64>,
-    /// Unit of the four numbers below.
+    /// Unit of `lowest`, `highest` and `step`.
     pub unit: String,
     /// Minimum reading; a heading is continued past north.
     pub lowest: f64,
@@ -71,7 +71,7 @@ impl From<&ChannelInspection> for ChannelEntry {
         let shown = |value: f64| value / unit.si_factor();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
         let spoken = |channel: Channel| names::with_blanks(channel.label());
-        let gap = readings.longest.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
+        let gap = readings.longest_gap.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),
             source: readings.source.clone(),
@@ -82,7 +82,7 @@ impl From<&ChannelInspection> for ChannelEntry {
             unit: unit.id().to_owned(),
             lowest: shown(readings.range[0]),
             highest: shown(readings.range[1]),
-            step: readings.step.map(shown),
+            step: readings.smallest_change.map(shown),
             wraps: readings.wraps,
             turns_to: to_starboard.map(|to_starboard| side(to_starboard).to_owned()),
             reference: relation.map(|relation| spoken(relation.reference)),

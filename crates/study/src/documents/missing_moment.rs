@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::missing_moment::{MissingMoment, MomentChannel, Panel};
+use ::trace::missing_moment::{MissingMoment, MomentChannel, MomentOverChannel};
 use campaign::curves::degrees;
 use campaign::statistics::distinct;
 use document::names;
-use document::trace::{MissingMomentEntry, PanelEntry, Verdict};
+use document::trace::{ChannelCurveEntry, MissingMomentEntry, Verdict};
 use ship::angle::to_deg;
 
 use super::columns::CsvColumns;
@@ -22,15 +22,15 @@ pub struct MissingMomentCurves {
     /// The moment according to the explanation, deg of rudder.
     pub explained: Vec<f64>,
     /// Curves over the channels, in the order of the entry.
-    pub over: Vec<ChannelCurve>,
+    pub by_channel: Vec<ChannelCurve>,
 }
 
 /// Missing moment over one channel; the channel is in deg or deg/s if it is an angle or a yaw rate, else in m/s.
 pub struct ChannelCurve {
     /// The channel; `None` if no channel has the column name of the entry.
-    pub over: Option<MomentChannel>,
+    pub channel: Option<MomentChannel>,
     /// The channel at the times of the moment.
-    pub rows: Vec<f64>,
+    pub channel_values: Vec<f64>,
     /// Abscissae of the curve.
     pub x: Vec<f64>,
     /// The moment at these abscissae, deg of rudder.
@@ -45,9 +45,9 @@ impl MissingMomentCurves {
     /// Curves of an entry, from the tables of [`table_over_time`] and [`table_over_channels`].
     pub fn read(entry: &MissingMomentEntry, [time, channels]: &[BTreeMap<String, Vec<f64>>; 2]) -> Self {
         let column_of = |table: &BTreeMap<String, Vec<f64>>, name: &str| table.get(name).cloned().unwrap_or_default();
-        let channel = |PanelEntry { column: name, .. }: &PanelEntry| ChannelCurve {
-            over: MomentChannel::ALL.into_iter().find(|over| column(*over).0 == name),
-            rows: column_of(time, name),
+        let channel = |ChannelCurveEntry { column: name, .. }: &ChannelCurveEntry| ChannelCurve {
+            channel: MomentChannel::ALL.into_iter().find(|over| column(*over).0 == name),
+            channel_values: column_of(time, name),
             x: column_of(channels, name),
             moment: column_of(channels, &format!("{name}_{MOMENT}")),
             half_width: column_of(channels, &format!("{name}_{HALF_WIDTH}")),
@@ -58,7 +58,7 @@ impl MissingMomentCurves {
             moment: column_of(time, MOMENT),
             band: BAND.map(|end| column_of(time, end)),
             explained: column_of(time, EXPLAINED),
-            over: entry.channel_curves.iter().map(channel).collect(),
+            by_channel: entry.channel_curves.iter().map(channel).collect(),
         }
     }
 }
@@ -69,7 +69,7 @@ const BAND: [&str; 2] = ["lower95_rudder_deg", "upper95_rudder_deg"];
 const HALF_WIDTH: &str = "half_width95_rudder_deg";
 const EXPLAINED: &str = "explained_rudder_deg";
 
-/// Column name of a channel, and whether the channel is an angle.
+/// Column name of a channel, and `true` if the channel is an angle or an angular rate.
 fn column(over: MomentChannel) -> (&'static str, bool) {
     match over {
         MomentChannel::YawRate => ("yaw_rate_deg_s", true),
@@ -86,7 +86,8 @@ fn shown(over: MomentChannel, values: &[f64]) -> Vec<f64> {
     if column(over).1 { degrees(values) } else { values.to_vec() }
 }
 
-/// Table over time: the moment with its band, the explanation, and every recorded channel.
+/// CSV table over time: the moment with its standard deviation and band, the moment of the best explanation, and every
+/// recorded channel; angles in degrees.
 pub fn table_over_time(missing: &MissingMoment) -> String {
     let mut columns = CsvColumns::default();
     columns.push(TIME, missing.time.clone());
@@ -95,7 +96,7 @@ pub fn table_over_time(missing: &MissingMoment) -> String {
     for (k, name) in BAND.into_iter().enumerate() {
         columns.push(name, (0..missing.time.len()).map(|row| to_deg(missing.interval(row)[k])).collect());
     }
-    if let Some(explained) = missing.explained.first() {
+    if let Some(explained) = missing.explanation_moments.first() {
         columns.push(EXPLAINED, degrees(explained));
     }
     for (over, values) in &missing.channels {
@@ -104,15 +105,16 @@ pub fn table_over_time(missing: &MissingMoment) -> String {
     columns.to_csv()
 }
 
-/// Table over the channels: the values of each channel, the moment, the half width of its band, and the explanation.
+/// CSV table over the channels: abscissae of each channel, the moment, the half width of its band, and the moment of
+/// the best explanation; angles in degrees.
 ///
 /// A fitted curve has mean zero over the rows; here the mean of the moment is added.
 pub fn table_over_channels(missing: &MissingMoment) -> String {
     let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
     let mut columns = CsvColumns::default();
-    for panel in &missing.panels {
-        let (name, curve) = (column(panel.over).0, &panel.curve);
-        columns.push(name, shown(panel.over, &curve.x));
+    for moment in &missing.channel_moments {
+        let (name, curve) = (column(moment.channel).0, &moment.curve);
+        columns.push(name, shown(moment.channel, &curve.x));
         let about = |values: &[f64]| values.iter().map(|value| to_deg(value + mean)).collect::<Vec<f64>>();
         columns.push(format!("{name}_{MOMENT}"), about(&curve.moment));
         columns.push(format!("{name}_{HALF_WIDTH}"), degrees(&curve.half_width));
@@ -123,7 +125,7 @@ pub fn table_over_channels(missing: &MissingMoment) -> String {
     columns.to_csv()
 }
 
-/// Ids of the effects of the explanations at some places, without repetition.
+/// Ids of the effects of the explanations with the indices `places`, without repetition.
 fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
     let explanations = places.iter().filter_map(|place| missing.explanations.get(*place));
     distinct(explanations.flat_map(|explanation| &explanation.effects).map(|(id, _)| (*id).to_owned()))
@@ -137,18 +139,18 @@ pub fn entry(
     verdict: Verdict,
     explains: bool,
 ) -> MissingMomentEntry {
-    let shows = |panel: &&Panel| panel.share.is_some() && !panel.curve.contains_zero();
-    let telling = || missing.panels.iter().filter(shows);
-    let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
+    let shows = |moment: &&MomentOverChannel| moment.share.is_some() && !moment.curve.contains_zero();
+    let telling = || missing.channel_moments.iter().filter(shows);
+    let everywhere = |place: &usize| telling().all(|moment| moment.inside.contains(place));
     let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
     let best = names::effects(&effects(missing, &[0]), ", ");
     let explanation = if explains { best.clone() } else { format!("best candidate: {best}") };
-    let of_panel = |panel: &Panel| PanelEntry {
-        channel: panel.over.as_str().to_owned(),
-        column: column(panel.over).0.to_owned(),
-        variance_share: panel.share,
-        is_significant: !panel.curve.contains_zero(),
-        inside: effects(missing, &panel.inside),
+    let of_channel = |moment: &MomentOverChannel| ChannelCurveEntry {
+        channel: moment.channel.as_str().to_owned(),
+        column: column(moment.channel).0.to_owned(),
+        variance_share: moment.share,
+        is_significant: !moment.curve.contains_zero(),
+        inside: effects(missing, &moment.inside),
     };
     let square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
     MissingMomentEntry {
@@ -162,6 +164,6 @@ pub fn entry(
             && inside.is_empty()
             && telling().next().is_some(),
         inside_all: effects(missing, &inside),
-        channel_curves: missing.panels.iter().map(of_panel).collect(),
+        channel_curves: missing.channel_moments.iter().map(of_channel).collect(),
     }
 }

@@ -1,5 +1,6 @@
-//! Documents of the commands in addition to those of the crate `document`: types of further JSON files and tables, from
-//! which pages and figures are made. `--format json` writes the text of the file to standard output.
+//! Documents of the commands: types of JSON files and tables that are not in the crate `document`, and functions that
+//! read and write all of them. Pages and figures are made from documents. `--format json` writes the text of the file
+//! to standard output.
 
 pub mod answers;
 pub mod columns;
@@ -47,12 +48,13 @@ pub const BENCH_FILE: &str = "bench.json";
 /// Name of the file with the curves of the figures of a fit or a prediction.
 pub const CURVES_FILE: &str = "curves.json";
 
-/// Text of a document. Fails if a type cannot be written as JSON.
-pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
+/// Indented JSON of a document. Fails if it cannot be written as JSON.
+pub fn to_json(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
 }
 
-/// Folder for the results of a command. Fails if it holds results of another command, whose page would be lost.
+/// The folder `place`, if the command that writes the file `document` may use it. Fails if it holds results of another
+/// command, whose page would be lost.
 pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     let documents = [FIT_FILE, TRACE_FILE, PREDICT_FILE, BENCH_FILE, MANIFEST_FILE].into_iter();
     match documents.filter(|name| *name != document).map(|name| place.join(name)).find(|path| path.is_file()) {
@@ -64,8 +66,9 @@ pub fn folder_for(document: &str, place: &Path) -> Result<PathBuf, Failure> {
     }
 }
 
-/// Folder for the result of some records. Fails also if it holds results of other records. Records are the same if the
-/// file name is equal (the content may have been corrected) or if the content is equal.
+/// The folder `place`, as from [`folder_for`], for the result of some records. Fails also if it holds results of other
+/// records. Records are the same if the file name is equal (the content may have been corrected) or if the content is
+/// equal.
 pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Result<PathBuf, Failure> {
     let place = folder_for(document, place)?;
     let path = place.join(document);
@@ -90,7 +93,7 @@ pub fn folder_for_records(document: &str, place: &Path, trials: &[Trial]) -> Res
     )))
 }
 
-/// Files and hashes of the fitted records of an earlier document.
+/// Path and SHA-256 of every fitted record of an earlier document.
 fn records_of(document: &Value) -> Vec<(String, String)> {
     let list = document["trials"].as_array().or_else(|| document["records"].as_array());
     let fitted = list.into_iter().flatten().filter(|record| record["held_out"] != true);
@@ -98,7 +101,7 @@ fn records_of(document: &Value) -> Vec<(String, String)> {
     fitted.filter_map(|record| Some((text(&record["file"])?, text(&record["sha256"])?))).collect()
 }
 
-/// `a.csv and 3 more`: the first file, and the number of the others.
+/// The first of some files and the number of further files, such as `a.csv and 3 more`.
 fn few(files: &[String]) -> String {
     match files {
         [only] => only.clone(),
@@ -110,11 +113,12 @@ fn few(files: &[String]) -> String {
 
 /// Writes the document of a command to a folder and returns its text. Fails if the file cannot be written.
 pub fn write_document(folder: &ResultFolder, name: &str, document: &impl Serialize) -> Result<String, Failure> {
-    let text = text(document).on("describe", &folder.path().join(name))?;
+    let text = to_json(document).on("describe", &folder.path().join(name))?;
     folder.write_synced(name, &text).map(|_| text)
 }
 
-/// Writes the document of a command and the curves of its figures to a folder.
+/// Writes the document of a command and the curves of its figures to a folder; returns the text of the document. Fails
+/// if a file cannot be written.
 pub fn write_with_curves(
     folder: &ResultFolder,
     name: &str,
@@ -173,7 +177,7 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 ///
 /// Fails if it cannot be written as JSON.
 pub fn answer_text<A: CommandAnswer>(body: &A) -> Result<String, Failure> {
-    text(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::execution)
+    to_json(&Versioned { schema: A::SCHEMA, body }).map_err(Failure::execution)
 }
 
 /// Writes a document to standard output.

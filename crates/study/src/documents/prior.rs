@@ -14,7 +14,7 @@ const MIN_SHIFT_SD: f64 = 1.0;
 /// Message if no hull near the models can be fitted.
 const NOT_NEAR: &str = "no hull close to it reproduces the records";
 
-/// Sentence for screen and page: the models, and whether the records agree with them.
+/// Sentence on the models of earlier trials and on whether the records agree with them, for screen and page.
 pub fn sentence(earlier: &EarlierTrials) -> String {
     let model = |model: &PriorModelEntry| {
         let ship = match model.likeness {

@@ -6,7 +6,7 @@ use campaign::scenario::name::slug;
 use campaign::scenario::{STRAIGHT_ON, TRACE};
 use campaign::statistics::{MIN_SUMMARISED_VALUES, grouped};
 use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
-use report::palette::Look;
+use report::palette::CurveStyle;
 use report::{CurveOrigin, PageFigure};
 
 use super::key_rows::tint;
@@ -25,8 +25,8 @@ pub fn capital(sentence: &str) -> String {
 
 /// Figures of a benchmark, one for every kind of record.
 pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
-    let figure = |field: &str| {
-        let boards = results.boards.iter().filter(|board| board.field == field);
+    let figure = |study: &str| {
+        let boards = results.boards.iter().filter(|board| board.study == study);
         let mut over = boards.flat_map(|board| &board.standings).filter_map(|standing| standing.ratio.as_ref());
         let arrow = match over.any(|ratio| ratio.value.is_none_or(|value| value > MAX_RATIO)) {
             true => format!(" An arrow: more than {MAX_RATIO} times, or no answer in half of the cases."),
@@ -35,12 +35,12 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
              records or more.{arrow}",
-            capital(field),
+            capital(study),
             results.reference
         );
-        let boards: Vec<&Leaderboard> = results.boards.iter().filter(|board| board.field == field).collect();
-        let finding = format!("{}: {}", capital(field), finding(&boards, &results.reference));
-        Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), finding, caption, ratios(results, field)?))
+        let boards: Vec<&Leaderboard> = results.boards.iter().filter(|board| board.study == study).collect();
+        let finding = format!("{}: {}", capital(study), finding(&boards, &results.reference));
+        Some(PageFigure::new(format!("{RATIOS}-{}", slug(study)), finding, caption, ratios(results, study)?))
     };
     results.study_names().into_iter().filter_map(figure).collect()
 }
@@ -91,7 +91,7 @@ fn finding(boards: &[&Leaderboard], reference: &str) -> String {
     }
 }
 
-/// Columns with one scale.
+/// Columns whose axes have the same range.
 fn share_scale(mut columns: Vec<RowsColumn>) -> Vec<RowsColumn> {
     let marks = columns.iter().flat_map(|column| &column.rows).flatten();
     let values = marks.filter_map(|item| if let RowKind::Mark(_, value, _) = item.kind { Some(value) } else { None });
@@ -100,17 +100,17 @@ fn share_scale(mut columns: Vec<RowsColumn>) -> Vec<RowsColumn> {
     columns
 }
 
-fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
-    let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
+fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
+    let boards: Vec<_> = results.boards.iter().filter(|board| board.study == study).collect();
     let mut rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     // The methods of the finding are on top, in full colour.
     let is_winner = |method: &str| boards.iter().any(|board| winners(board).any(|winner| winner == method));
     rivals.sort_by_key(|method| !is_winner(method));
     let is_plain = !rivals.iter().any(|method| is_winner(method));
-    let look = |method: &str| {
-        let look = curve_origin(method).look();
-        let colour = if is_plain || is_winner(method) { look.colour } else { tint(look.colour) };
-        Look { colour, hollow: false, ..look }
+    let style = |method: &str| {
+        let style = curve_origin(method).style();
+        let colour = if is_plain || is_winner(method) { style.colour } else { tint(style.colour) };
+        CurveStyle { colour, hollow: false, ..style }
     };
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
     if rivals.is_empty() || !has_ratios {
@@ -118,10 +118,10 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
     }
     let column = |board: &&Leaderboard| {
         let points = |method: &str| -> Vec<RowItem> {
-            let cases = results.cases.iter().filter(|case| case.task == board.task && case.field == board.field);
+            let cases = results.cases.iter().filter(|case| case.task == board.task && case.study == board.study);
             let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
-            let look = Look { hollow: true, ..look(method) };
-            ratios.map(|ratio| RowItem::new("", RowKind::Mark(look, ratio.max(f64::MIN_POSITIVE), None))).collect()
+            let style = CurveStyle { hollow: true, ..style(method) };
+            ratios.map(|ratio| RowItem::new("", RowKind::Mark(style, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
             if board.cases < MIN_SUMMARISED_VALUES {
@@ -132,7 +132,7 @@ fn ratios(results: &BenchDocument, field: &str) -> Option<NamedRows> {
             let value = ratio.value.filter(|value| *value <= MAX_RATIO).unwrap_or(f64::INFINITY);
             let end = |end: Option<f64>| end.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
             let interval = ratio.ci95.map(|ends| ends.map(end)).filter(|_| value.is_finite());
-            vec![RowItem::new("", RowKind::Mark(look(method), value.max(f64::MIN_POSITIVE), interval))]
+            vec![RowItem::new("", RowKind::Mark(style(method), value.max(f64::MIN_POSITIVE), interval))]
         };
         RowsColumn {
             x: AxisSpec::new(

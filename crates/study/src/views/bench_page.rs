@@ -43,7 +43,7 @@ pub fn page(results: &BenchDocument) -> Page {
     let mut placed = PlacedFigures::default();
     placed.put("all", figures(results));
     let boards = results.overall.iter().flat_map(|overall| &overall.boards);
-    let boards: Vec<String> = boards.map(|(task, field)| format!("{} ({field})", task.id())).collect();
+    let boards: Vec<String> = boards.map(|(task, study)| format!("{} ({study})", task.id())).collect();
     let page = BenchPage {
         results,
         tasks: grouped(&results.boards, |board| board.task),

@@ -86,7 +86,7 @@ pub fn leaderboards(results: &BenchDocument) -> Table {
     let mut table = Table::new(columns(first, &results.reference, true));
     for board in &results.boards {
         for standing in &board.standings {
-            let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
+            let mut line = vec![board.task.id().to_owned(), board.study.clone(), board.cases.to_string()];
             line.extend(cells(standing, board.task == BenchTask::Indices));
             table.push(line);
         }
@@ -111,7 +111,7 @@ pub fn leaderboard_numbers(results: &BenchDocument) -> Table {
     };
     for (board, row) in results.boards.iter().flat_map(|board| board.standings.iter().map(move |row| (board, row))) {
         let held = |place: usize| row.coverage.map(|of| 100.0 * of[place].count as f64 / of[place].cases as f64);
-        let head = [board.task.id(), &board.field, &board.cases.to_string(), &board.clusters.to_string(), &row.method];
+        let head = [board.task.id(), &board.study, &board.cases.to_string(), &board.clusters.to_string(), &row.method];
         let figures = [Some(row.median), Some(row.quantile_90), row.ratio, row.share_better.map(percent)];
         let line = head.map(str::to_owned).into_iter().chain([row.failed.to_string()]);
         table.push(line.chain(figures.into_iter().flat_map(all)).chain([Some(row.rank), held(0), held(1)].map(text)));
@@ -155,8 +155,8 @@ pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, standing)| standing.method == method) {
             let mut line = cells(standing, board.task == BenchTask::Indices);
-            let (task, field, methods) = (board.task.title(), &board.field, board.standings.len());
-            line[0] = format!("{task}, {field} ({} of {methods})", place + 1);
+            let (task, study, methods) = (board.task.title(), &board.study, board.standings.len());
+            line[0] = format!("{task}, {study} ({} of {methods})", place + 1);
             line.insert(1, board.cases.to_string());
             table.push(line);
         }
@@ -198,7 +198,7 @@ pub fn overall(results: &BenchDocument) -> Table {
     table
 }
 
-/// Sets of a benchmark and the numbers of their records.
+/// Table of the sets of a benchmark: number of trials, and every record with its manoeuvre and SHA-256.
 pub fn record_sets(results: &BenchDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["set"]).counts(["trials"]).texts(["record", "manoeuvre", "SHA-256"]));
@@ -222,14 +222,14 @@ pub fn answer_rows(results: &BenchDocument) -> Table {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {
-        let BenchCase { task, field, set, trial, fitted, scored, missing, answers } = case;
+        let BenchCase { task, study, set, trial, fitted, scored, missing, answers } = case;
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();
             let judgement = answer.naming.map_or_else(String::new, |naming| naming.label().to_owned());
             table.push([
                 task.id().to_owned(),
-                field.clone(),
+                study.clone(),
                 set.clone(),
                 trial.map_or_else(String::new, |trial| trial.to_string()),
                 fitted.join(" + "),

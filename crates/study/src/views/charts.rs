@@ -2,8 +2,8 @@
 
 use campaign::scenario::TRACE;
 use report::figures::{
-    AxisLine, AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, Plot, Reference95, RowItem, RowKind,
-    RowsColumn, Stack, TickRule,
+    AxisLine, AxisSpec, Layer, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, Plot, Reference95, RowItem,
+    RowKind, RowsColumn, TickRule,
 };
 use report::{CurveOrigin, PlotCurve};
 
@@ -56,19 +56,24 @@ impl ErrorMeasure {
         AxisSpec::new(title, if is_log { TickRule::Logarithmic } else { TickRule::Decimal })
     }
 
-    /// Statistic of one panel.
-    pub fn statistic(self, record: &Performance, panel: usize) -> Option<Statistic> {
-        let errors = if panel.is_multiple_of(2) { &record.k } else { &record.t };
+    /// Statistic of a panel, in per cent, for the validation in degrees; `None` if the method has none. Panels are
+    /// counted from 0; those with an even number are of K, those with an odd number of T.
+    pub fn statistic(self, performance: &Performance, panel: usize) -> Option<Statistic> {
+        let errors = if panel.is_multiple_of(2) { &performance.k } else { &performance.t };
         match self {
             Self::Rms | Self::OverBound => errors.rms,
             // A few estimates with an interval do not characterise a method.
             Self::Coverage => {
-                let often = errors.quoting.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
-                let figure = if panel > 1 { errors.width } else { errors.coverage.map(|share| share.times(100.0)) };
+                let often = errors.interval_share.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
+                let figure = if panel > 1 {
+                    errors.median_interval_width
+                } else {
+                    errors.coverage.map(|share| share.times(100.0))
+                };
                 figure.filter(|_| often)
             }
-            Self::Failures => record.failure_rate.map(|share| share.times(100.0)),
-            Self::Validation => record.validation_rmse_deg,
+            Self::Failures => performance.failure_rate.map(|share| share.times(100.0)),
+            Self::Validation => performance.validation_rmse_deg,
         }
     }
 
@@ -140,7 +145,7 @@ struct ComparedMethods<'a> {
 }
 
 impl<'a> ComparedMethods<'a> {
-    /// The comparison; `None` if no method can be compared.
+    /// The comparison; `None` as from [`comparable_methods`], or if a cell lacks the bound that the measure needs.
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
         let (mut methods, to_nearest) = comparable_methods(design, measure, cells())?;
@@ -272,8 +277,8 @@ pub fn over_axes(
     let number = numbers.iter().find(leaves_few).or(numbers.first()).copied();
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, has no information.
-    let says_something = |record: &Performance| {
-        let mut figures = (0..measure.panels()).filter_map(|panel| measure.statistic(record, panel));
+    let says_something = |performance: &Performance| {
+        let mut figures = (0..measure.panels()).filter_map(|panel| measure.statistic(performance, panel));
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
     };
     let groups = groups(design, x);
@@ -329,7 +334,7 @@ fn groups(design: &Design, x: usize) -> Vec<ChartGroup> {
     groups.map(|(name, cells)| ChartGroup { name, head: head(cells[0]), cells }).collect()
 }
 
-/// Colour and mark of a method.
+/// Origin of the curves of a method, which sets their colour, mark and dash.
 pub fn curve_origin(design: &Design, method: usize) -> CurveOrigin {
     curves::curve_origin(&design.methods, &design.methods[method].label)
 }
@@ -357,7 +362,7 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
             let origin = curve_origin(design, method);
             let points: Vec<_> = group.cells.iter().filter_map(point).collect();
             (!points.is_empty())
-                .then(|| Layer::marks(origin.label(), origin.look(), points).with_line(Pen::from_origin(&origin)))
+                .then(|| Layer::marks(origin.label(), origin.style(), points).with_line(Pen::from_origin(&origin)))
         };
         let bound = |&cell: &usize| Some((at(cell)?, compared.shown_bound(cell, panel)?));
         let (bx, by): (Vec<f64>, Vec<f64>) = group.cells.iter().filter_map(bound).unzip();
@@ -370,14 +375,14 @@ fn curves(compared: &ComparedMethods, x: usize, groups: &[ChartGroup]) -> Panels
         }
     };
     let marks = design.prose.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
-    let stack = Stack {
+    let panel_group = PanelGroup {
         x: vec![across; groups.len()],
         rows: titles.iter().enumerate().map(row).collect(),
         panels: (0..titles.len()).flat_map(|row| groups.iter().map(move |group| panel(row, group))).collect(),
-        marks: marks.map(|mark| AxisLine { value: mark.value, label: mark.label.clone() }).collect(),
-        ..Stack::default()
+        vertical_lines: marks.map(|mark| AxisLine { value: mark.value, label: mark.label.clone() }).collect(),
+        ..PanelGroup::default()
     };
-    Panels { note: compared.note(groups), overflow_note: compared.beyond(), ..Panels::new(stack) }
+    Panels { note: compared.note(groups), overflow_note: compared.beyond(), ..Panels::new(panel_group) }
 }
 
 fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows {
@@ -388,7 +393,7 @@ fn named(compared: &ComparedMethods, x: usize, group: &ChartGroup) -> NamedRows 
             let dot = |&method: &usize| {
                 let (value, interval) = compared.drawn(cell, method, panel)?;
                 let origin = curve_origin(design, method);
-                Some(RowItem::mark_below(origin.label(), origin.look(), value, interval))
+                Some(RowItem::mark_below(origin.label(), origin.style(), value, interval))
             };
             let bound = compared.shown_bound(cell, panel);
             let bound = bound.map(|bound| RowItem::new(CurveOrigin::Bound.label(), RowKind::Limit(bound)));

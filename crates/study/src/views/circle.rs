@@ -2,7 +2,7 @@
 
 use document::fit::{CircleEntry, FitDocument, PredictedCircleEntry, TrialEntry};
 use document::names;
-use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, PanelGroup, PanelRow, Panels, Pen};
 use report::number::{fixed, significant};
 use report::palette::{DASHED, DOTTED, HEADING, INK};
 use report::{CurveOrigin, PageFigure, PlotCurve};
@@ -107,11 +107,14 @@ impl CircleTrack {
 /// Share of the tactical diameter at which a point of a track is taken as its end, since the points are discrete.
 const NEARLY: f64 = 0.999;
 
-/// Circles from above, to scale, each with its dimension lines.
-pub fn plan_view(circles: &[CircleTrack], further: Vec<Layer>) -> Stack {
+/// Circles from above, to scale, each with its dimension lines, over the `further` layers.
+pub fn plan_view(circles: &[CircleTrack], further: Vec<Layer>) -> PanelGroup {
     let layers = further.into_iter().chain(circles.iter().flat_map(CircleTrack::layers)).collect();
     let row = PanelRow::new(AxisSpec::decimal("along the approach [L]"), 0.62);
-    Stack { has_equal_scales: true, ..Stack::over(AxisSpec::decimal("across, to starboard [L]"), vec![(row, layers)]) }
+    PanelGroup {
+        has_equal_scales: true,
+        ..PanelGroup::over(AxisSpec::decimal("across, to starboard [L]"), vec![(row, layers)])
+    }
 }
 
 /// Note on the dimension lines of a circle.
@@ -133,8 +136,8 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
     });
     let (mut findings, mut circles): (Vec<String>, Vec<CircleTrack>) = recorded.unzip();
     for (number, circle) in circles.iter_mut().enumerate() {
-        let look = CurveOrigin::Series { label: circle.name.clone(), number }.look();
-        circle.pen = Pen::new(look.colour);
+        let style = CurveOrigin::Series { label: circle.name.clone(), number }.style();
+        circle.pen = Pen::new(style.colour);
     }
     if let Some((entry, track)) = document.predicted_circle.as_ref().zip(curves.predicted_circle.clone()) {
         let figures = [entry.advance_lengths, entry.transfer_lengths, entry.tactical_diameter_lengths];

@@ -98,7 +98,7 @@ pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
         let trials: u64 = lines.iter().map(|(line, _)| line.trials).sum();
         let count = |pick: fn(&ImoDecisionTally) -> u64| lines.iter().map(|(_, tally)| pick(tally)).sum::<u64>();
         let mut cells = vec![name.to_string(), design.methods[method].label.clone(), trials.to_string()];
-        cells.push(count(|tally| tally.kept).to_string());
+        cells.push(count(|tally| tally.meeting_trials).to_string());
         cells.extend(percent(wilson_share(count(|tally| tally.right), trials)));
         cells.extend(percent(wilson_share(count(|tally| tally.wrong), trials)));
         table.push(cells);

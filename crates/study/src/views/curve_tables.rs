@@ -12,7 +12,7 @@ use super::study_figures::{FigurePlace, StudyFigure};
 use crate::documents::columns::CsvColumns;
 use crate::documents::fit_curves::FitCurves;
 
-/// Column: its name with its unit, and its values over those of the first column.
+/// Curve over time with the name of its column, which includes the unit.
 type NamedCurve<'a> = (String, &'a PlotCurve);
 
 /// Label of an origin as part of a column name.
@@ -39,8 +39,8 @@ fn table(columns: Vec<NamedCurve>) -> String {
     table.to_csv()
 }
 
-/// Record and replays: `t_s`, `heading_deg`, the rudder and the noise-free heading if there are any, and heading and
-/// residual of every method.
+/// CSV table of a record and its replays: `t_s`, `heading_deg`, the rudder and the noise-free heading if there are any,
+/// and heading and residual of every method.
 pub fn replay_table(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
     let mut columns = vec![("heading_deg".to_owned(), &replays.record)];
     columns.extend(rudder.map(|rudder| ("rudder_deg".to_owned(), rudder)));
@@ -53,7 +53,7 @@ pub fn replay_table(replays: &Replays, rudder: Option<&PlotCurve>) -> String {
     table(columns)
 }
 
-/// Writes the replays of every record of a fit.
+/// Writes the table of the replays of every record of a fit, after removal of those of an earlier fit.
 pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Failure> {
     folder.remove_matching(|name| name.starts_with("replay-") && name.ends_with(".csv"))?;
     curves.records.iter().enumerate().try_for_each(|(number, record)| {

@@ -46,33 +46,33 @@ pub fn chart_finding(plot: &Plot) -> String {
 
 /// Range at the end of the axis, in the last column of panels.
 fn of_curves(data: &Panels) -> String {
-    let Some(stack) = data.stacks.first().filter(|stack| !stack.rows.is_empty()) else {
+    let Some(group) = data.groups.first().filter(|group| !group.rows.is_empty()) else {
         return String::from("No data");
     };
-    if stack.columns.is_some() {
+    if group.columns.is_some() {
         return of_clouds(data);
     }
-    let (across, row) = (stack.x.len().max(1), stack.rows.len().min(2) - 1);
-    let Some(panel) = stack.panels.get((row + 1) * across - 1) else { return String::from("No data") };
+    let (across, row) = (group.x.len().max(1), group.rows.len().min(2) - 1);
+    let Some(panel) = group.panels.get((row + 1) * across - 1) else { return String::from("No data") };
     let marks = || panel.layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let end = marks().flat_map(|layer| &layer.curve.x).copied().fold(f64::NEG_INFINITY, f64::max);
     let at_end = marks().filter_map(|layer| {
         let (_, value) = layer.curve.pairs().filter(|(x, _)| *x == end).last()?;
         Some((layer.name.clone().unwrap_or_default(), value))
     });
-    let head = panel.head.as_ref().or(stack.panels.get(across - 1).and_then(|panel| panel.head.as_ref()));
+    let head = panel.head.as_ref().or(group.panels.get(across - 1).and_then(|panel| panel.head.as_ref()));
     let head = head.map_or_else(String::new, |head| format!("{head}, "));
-    let x = stack.x.last().map_or("", |ruler| ruler.title.as_str());
+    let x = group.x.last().map_or("", |ruler| ruler.title.as_str());
     format!(
         "At {head}{}, {}",
         range(x, [(String::new(), end)]).replace(": ", " "),
-        range(&stack.rows[row].y.title, at_end)
+        range(&group.rows[row].y.title, at_end)
     )
 }
 
 /// Range of the standard deviations of T in clouds of errors.
 fn of_clouds(data: &Panels) -> String {
-    let stack = &data.stacks[0];
+    let group = &data.groups[0];
     let spread = |panel: &report::figures::LayeredPanel| {
         let cloud = panel.layers.iter().find(|layer| matches!(layer.kind, LayerKind::Cloud(_)))?;
         let values: Vec<f64> = cloud.curve.pairs().map(|(_, t)| t).filter(|t| t.is_finite()).collect();
@@ -80,10 +80,10 @@ fn of_clouds(data: &Panels) -> String {
         let square = values.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / values.len() as f64;
         Some((panel.head.clone().unwrap_or_default(), square.sqrt()))
     };
-    range("scatter of T [%]", stack.panels.iter().filter_map(spread))
+    range("scatter of T [%]", group.panels.iter().filter_map(spread))
 }
 
-/// Range of values in the row with the largest ratio of its values; over all rows if each has one value.
+/// Range of values in the row with the largest ratio of its values; over all rows if none has several values.
 fn of_rows(data: &NamedRows) -> String {
     let Some(column) = data.columns.get(data.columns.len().min(2).wrapping_sub(1)) else {
         return String::from("No data");
@@ -118,7 +118,7 @@ fn of_map(data: &CellMap) -> String {
         for (cells, row) in rows.iter().zip(&data.rows) {
             for (cell, column) in cells.iter().zip(&data.columns) {
                 let place = head.iter().chain([row, column]).cloned().collect::<Vec<String>>().join(", ");
-                values.extend(cell.value.map(|value| (place, row, value, cell.outline == Some(Outline::Right))));
+                values.extend(cell.value.map(|value| (place, row, value, cell.outline == Some(Outline::Correct))));
             }
         }
     }
@@ -143,7 +143,7 @@ pub fn zigzag_finding(data: &ZigZagPlot) -> String {
 #[cfg(test)]
 mod tests {
     use report::CurveOrigin;
-    use report::figures::{AxisSpec, Layer, PanelRow, Stack};
+    use report::figures::{AxisSpec, Layer, PanelGroup, PanelRow};
 
     use super::*;
 
@@ -161,13 +161,13 @@ mod tests {
 
     #[test]
     fn curves_are_told_at_the_end_of_their_axis_and_of_t() {
-        let look = CurveOrigin::After.look();
+        let style = CurveOrigin::After.style();
         let layers = |scale: f64| {
             ["a", "b"]
                 .map(|name| {
                     Layer::marks(
                         name,
-                        look,
+                        style,
                         vec![(0.1, 9.0, None), (1.0, scale * if name == "a" { 2.0 } else { 4.0 }, None)],
                     )
                 })
@@ -177,7 +177,7 @@ mod tests {
             (PanelRow::new(AxisSpec::decimal("rms error of K [%]"), 0.2), layers(1.0)),
             (PanelRow::new(AxisSpec::decimal("rms error of T [%]"), 0.2), layers(10.0)),
         ];
-        let data = Panels::new(Stack::over(AxisSpec::decimal("heading noise [°]"), rows));
+        let data = Panels::new(PanelGroup::over(AxisSpec::decimal("heading noise [°]"), rows));
         assert_eq!(chart_finding(&data.into()), "At heading noise 1.0°, rms error of T from 20 % (a) to 40 % (b)");
     }
 }

@@ -6,10 +6,10 @@ use document::method::MethodEntry;
 use document::names;
 use document::single_records::{SingleRecord, SingleRecords};
 use report::figures::{
-    AxisSpec, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Plot, Reference95, Stack, TickRule,
+    AxisSpec, Layer, LayerKind, LayeredPanel, PanelGroup, PanelRow, Panels, Pen, Plot, Reference95, TickRule,
 };
 use report::number::{counted, fixed, significant};
-use report::palette::{BEFORE, Look, Marker, SOLID};
+use report::palette::{BEFORE, CurveStyle, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
 use ship::Particulars;
 use trial::Quantity;
@@ -114,9 +114,9 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
 
 /// Record with marks at excluded or doubtful readings.
 fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
-    let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
+    let style = CurveStyle { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marks = marks.each_ref().map(|curve| {
-        Layer::marks("left out or doubtful", look, curve.pairs().map(|(time, value)| (time, value, None)).collect())
+        Layer::marks("left out or doubtful", style, curve.pairs().map(|(time, value)| (time, value, None)).collect())
     });
     let [of_heading, of_rudder] = marks;
     let heading = Layer::new("recorded heading", record.replays.record.clone(), LayerKind::Record);
@@ -149,14 +149,14 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     let scaled = |x: f64, y: f64| (by_k * x, by_t * y);
     let layers = |entry: &MethodEntry| -> Option<[Option<Layer>; 2]> {
         let estimates = entry.parameters.as_ref()?;
-        let look = CurveOrigin::Method(entry.method.clone()).look();
-        let pen = Pen { dash: look.dash, ..Pen::new(look.colour) };
+        let style = CurveOrigin::Method(entry.method.clone()).style();
+        let pen = Pen { dash: style.dash, ..Pen::new(style.colour) };
         let region = curves.regions.get(&entry.method).map(|region| {
             let (x, y) = region.pairs().map(|(k, t)| scaled(k, t)).unzip();
             Layer::line("", PlotCurve { x, y }, pen)
         });
         let (k, t) = scaled(estimates.k_per_s.value, estimates.t_s.value);
-        Some([region, Some(Layer::marks(entry.method.as_str(), look, vec![(k, t, None)]))])
+        Some([region, Some(Layer::marks(entry.method.as_str(), style, vec![(k, t, None)]))])
     };
     let [k, t] = titles(ship).map(|title| AxisSpec::decimal(title).within(PLANE_REACH, None));
     let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
@@ -164,7 +164,7 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
     Panels {
         names_aside: true,
         note: (!curves.regions.is_empty()).then_some(note),
-        ..Panels::new(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
+        ..Panels::new(PanelGroup::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
     }
 }
 
@@ -177,14 +177,14 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let ship = document.particulars();
     let joint = document.methods.iter().find(|entry| entry.method == all.method).and_then(|entry| entry.parameters);
     // Points are not joined: a cross or a star would hide its bar.
-    let look = Look { marker: Marker::Circle, ..CurveOrigin::Method(all.method.clone()).look() };
+    let style = CurveStyle { marker: Marker::Circle, ..CurveOrigin::Method(all.method.clone()).style() };
     let name = format!("{}, every record alone, 95 %", all.method);
     let panel = |quantity: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
         let point = |record: &SingleRecord| {
             let value = quantity(record).scaled(factor);
             (amplitude(record), value.value, value.ci95)
         };
-        let marks = Layer::marks(name.as_str(), look, all.records.iter().map(point).collect());
+        let marks = Layer::marks(name.as_str(), style, all.records.iter().map(point).collect());
         LayeredPanel { head: None, layers: vec![marks.side_by_side()], ..LayeredPanel::default() }
     };
     let row = |title: String, joint: Option<Quantity>, factor: f64| {
@@ -200,8 +200,12 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let mut panels: Vec<LayeredPanel> = amplitudes.map(|of_axis| panel(|fit| fit.k_per_s, by_k, of_axis)).into();
     panels.extend(amplitudes.map(|of_axis| panel(|fit| fit.t_s, by_t, of_axis)));
     let rows = vec![row(k, joint.map(|fit| fit.k_per_s), by_k), row(t, joint.map(|fit| fit.t_s), by_t)];
-    let stack =
-        Stack { x: x.map(|title| AxisSpec::new(title, TickRule::Angle)).into(), rows, panels, ..Stack::default() };
+    let group = PanelGroup {
+        x: x.map(|title| AxisSpec::new(title, TickRule::Angle)).into(),
+        rows,
+        panels,
+        ..PanelGroup::default()
+    };
     let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
-    Panels { note, ..Panels::new(stack) }
+    Panels { note, ..Panels::new(group) }
 }

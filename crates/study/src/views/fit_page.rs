@@ -14,7 +14,7 @@ use super::{circle, first_page, fit_figures, indices, method_table, predict_form
 use crate::documents::fit_curves::FitCurves;
 use crate::documents::prior;
 use crate::scales::scale_name;
-use crate::work::every_scale::PREFERRED_METHODS;
+use crate::work::scale_comparison::PREFERRED_METHODS;
 
 /// Stem of the first figure of the page: the replays of every estimate on the first record.
 const FIRST: &str = "replays";
@@ -90,7 +90,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     Page::new(page.render(), page.figures)
 }
 
-/// Names of the records, and the scale of the ship if it is known.
+/// Name of the record, or number of the records, with the scale of the ship if it is known.
 fn title(document: &FitDocument, curves: &FitCurves) -> String {
     let records = match (&document.trials[..], curves.records.first()) {
         ([_], Some(record)) => names::record(&record.name),
@@ -100,7 +100,7 @@ fn title(document: &FitDocument, curves: &FitCurves) -> String {
     format!("{records}{ship}")
 }
 
-/// Lines below the table on the screen: characteristics of the records, prime indices.
+/// Text below the table on the screen: characteristics of the records, prime indices, comparison of scales.
 pub fn below_table(document: &FitDocument, curves: &FitCurves) -> String {
     let mut below_table = notes(document, curves);
     for (scale_sentence, table) in scales(document) {
@@ -220,7 +220,8 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
     format!("\nNot used: {name}, because {why}.")
 }
 
-/// Names, rows and duration of the records, their common scale, and the check against earlier trials.
+/// Name, number of rows and duration of the record, or number of records and rows; the common scale, and the check
+/// against earlier trials.
 pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
     let rows: usize = document.trials.iter().map(|trial| trial.samples).sum();
     let head = match (&document.trials[..], curves.records.first()) {

@@ -3,16 +3,16 @@
 use ::trace::replay_errors::HORIZONS_S;
 use campaign::curves::angle_curve_deg;
 use document::names;
-use document::trace::{BeforeAfter, ErrorsEntry, RecordEntry, TraceDocument};
+use document::trace::{ModelReplayErrors, RecordEntry, RecordReplayErrors, TraceDocument};
 use predict::prediction::RANGE_FACTOR;
 use report::figures::{
-    AxisSpec, Layer, LayeredPanel, NamedRows, PanelRow, Panels, Pen, RowItem, RowsColumn, Stack, TickRule,
+    AxisSpec, Layer, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowsColumn, TickRule,
 };
 use report::markdown::text;
 use report::number::{counted, fixed, significant};
 use report::{CurveOrigin, PageFigure};
 
-use super::trace_figures::{ratio, replays_by_origin};
+use super::trace_figures::{heading_error_ratio, replays_by_origin};
 use super::trace_tables::restarted_heading_error;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
@@ -22,9 +22,9 @@ const ACROSS: usize = 3;
 /// Figure of the residuals of both models on every held-out record, the worst first; `None` without held-out records.
 pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let all = document.records.iter().zip(&curves.records).filter(|(entry, _)| entry.held_out);
-    let mut all: Vec<(&RecordEntry, &TracedRecord, &BeforeAfter)> =
+    let mut all: Vec<(&RecordEntry, &TracedRecord, &RecordReplayErrors)> =
         all.zip(&document.trace.error.validation).map(|((entry, record), errors)| (entry, record, errors)).collect();
-    let size = |(_, _, errors): &(&RecordEntry, &TracedRecord, &BeforeAfter)| errors.after.heading_rmse_deg;
+    let size = |(_, _, errors): &(&RecordEntry, &TracedRecord, &RecordReplayErrors)| errors.after.heading_rmse_deg;
     all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let [worst, best] = [all.first()?, all.last()?];
     let error_words = |entry: &(&RecordEntry, _, _), degrees| {
@@ -35,9 +35,9 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
         1 => format!("Heading error: {worst}"),
         count => format!("Heading error on {}: from {best} to {worst}", counted(count as u64, "held-out record")),
     };
-    let panel = |(entry, record, errors): &(&RecordEntry, &TracedRecord, &BeforeAfter)| {
+    let panel = |(entry, record, errors): &(&RecordEntry, &TracedRecord, &RecordReplayErrors)| {
         let line = |(origin, replay): (CurveOrigin, &identify::replay::Replay)| {
-            let pen = Pen::new(origin.look().colour).width(0.9);
+            let pen = Pen::new(origin.style().colour).width(0.9);
             Layer::line(origin.label(), angle_curve_deg(&replay.time, &replay.residual), pen)
         };
         let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
@@ -45,8 +45,12 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
         LayeredPanel { head: Some(head), layers: replays_by_origin(record).map(line).into(), ..LayeredPanel::default() }
     };
     let row = PanelRow::zeroed(AxisSpec::new("residual [°]", TickRule::Angle), 0.13);
-    let plot =
-        Panels::new(Stack::multiples(ACROSS.min(all.len()), AxisSpec::time(), row, all.iter().map(panel).collect()));
+    let plot = Panels::new(PanelGroup::multiples(
+        ACROSS.min(all.len()),
+        AxisSpec::time(),
+        row,
+        all.iter().map(panel).collect(),
+    ));
     let caption = "Heading errors of the best first-order response (before) and of the model with the effects (after) on records that were \
                    not fitted; degrees are root mean squares. The worst predicted record comes first.";
     Some(PageFigure::new("held-out-residuals", finding, caption, plot))
@@ -75,10 +79,11 @@ pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> O
 /// visible. `None` without held-out records.
 pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
-    let column = |title: String, pick: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
-        let row = |errors: &BeforeAfter| -> Vec<RowItem> {
+    let column = |title: String, pick: &dyn Fn(&ModelReplayErrors) -> Option<f64>| {
+        let row = |errors: &RecordReplayErrors| -> Vec<RowItem> {
             let pairs = [(CurveOrigin::Before, &errors.before), (CurveOrigin::After, &errors.after)];
-            let mark = |(of, all): (CurveOrigin, _)| Some(RowItem::mark_below(of.label(), of.look(), pick(all)?, None));
+            let mark =
+                |(of, all): (CurveOrigin, _)| Some(RowItem::mark_below(of.label(), of.style(), pick(all)?, None));
             pairs.into_iter().filter_map(mark).collect()
         };
         let rows = judged.iter().map(|record| row(record.errors)).collect();
@@ -90,8 +95,10 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
     }));
     let count = judged.len();
     let records = if count == 1 { "record that was" } else { "records that were" };
-    let title =
-        format!("Heading error × {:.2} on {count} {records} not fitted", ratio(judged.iter().map(|line| line.errors)));
+    let title = format!(
+        "Heading error × {:.2} on {count} {records} not fitted",
+        heading_error_ratio(judged.iter().map(|line| line.errors))
+    );
     let data = NamedRows {
         names: judged.iter().map(|record| format!("{}, {}", names::record(record.name), record.used)).collect(),
         columns,

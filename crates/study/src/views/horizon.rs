@@ -2,17 +2,17 @@
 
 use campaign::statistics::MIN_SUMMARISED_VALUES;
 use document::trace::{HorizonEntry, TraceDocument};
-use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
+use report::figures::{AxisSpec, Layer, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::{counted, significant};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
 /// Horizon named in the finding in addition to the whole record, s; the shortest if the records lack it.
 const SHOWN_S: f64 = 20.0;
 
-/// Heading error of one of the two models.
+/// Function that picks the heading error of a model from an entry, deg.
 type HorizonError = fn(&HorizonEntry) -> f64;
 
-/// The models with their errors.
+/// The base and the average of the structures, with their heading errors.
 const MODELS: [(CurveOrigin, HorizonError); 2] =
     [(CurveOrigin::Before, |entry| entry.before_deg), (CurveOrigin::After, |entry| entry.after_deg)];
 
@@ -57,7 +57,7 @@ fn finding(horizons: &[Vec<&HorizonEntry>], records: &str) -> Option<String> {
 /// Lines of one model: the range of the records or every single one, and the pooled error.
 fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: usize) -> Vec<Layer> {
     let (origin, error) = &MODELS[number];
-    let (look, x) = (origin.look(), horizons.iter().map(|entries| place(entries)).collect::<Vec<f64>>());
+    let (style, x) = (origin.style(), horizons.iter().map(|entries| place(entries)).collect::<Vec<f64>>());
     let over = |pool: &dyn Fn(&[&HorizonEntry]) -> f64| {
         PlotCurve::new(x.as_slice(), horizons.iter().map(|entries| pool(entries)).collect::<Vec<f64>>())
     };
@@ -66,7 +66,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
     };
     let mut layers = Vec::new();
     if records.len() >= MIN_SUMMARISED_VALUES {
-        layers.push(Layer::band("", [end(f64::min), end(f64::max)], look.colour, 0.15));
+        layers.push(Layer::band("", [end(f64::min), end(f64::max)], style.colour, 0.15));
     } else if records.len() > 1 {
         layers.extend(records.iter().map(|record| {
             let (x, y): (Vec<f64>, Vec<f64>) = record.iter().map(|entry| (entry.horizon_s, error(entry))).unzip();
@@ -75,7 +75,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
         }));
     }
     let points = x.iter().zip(horizons).map(|(x, entries)| (*x, pooled(entries, *error), None)).collect();
-    layers.push(Layer::marks(origin.label(), look, points).with_line(Pen::from_origin(origin)));
+    layers.push(Layer::marks(origin.label(), style, points).with_line(Pen::from_origin(origin)));
     layers
 }
 
@@ -101,7 +101,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
          far as half of them go.{each}"
     );
     let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;
-    Some(PageFigure::new("horizon", finding, caption, Panels::new(Stack::over(x, vec![(row, layers)]))))
+    Some(PageFigure::new("horizon", finding, caption, Panels::new(PanelGroup::over(x, vec![(row, layers)]))))
 }
 
 #[cfg(test)]

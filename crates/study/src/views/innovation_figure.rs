@@ -1,12 +1,12 @@
-//! Check of model and noise on a record: a normal Q–Q plot of the innovations of its headings with the 95 % band of
-//! chance, and their autocorrelation with the test of whiteness. The moment that the base lacks has another figure.
+//! Check of model and noise on a record: a normal Q–Q plot of the innovations of its headings with the pointwise 95 %
+//! band of normal numbers, and their autocorrelation with the test of whiteness.
 
 use ::trace::SIGNIFICANCE_LEVEL;
 use estimation::residuals::{GappedSeries, autocorrelation, whiteness_lags, whiteness_test};
 use estimation::statistics::upper_median;
-use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelGroup, PanelRow, Panels, Pen};
 use report::number::significant;
-use report::palette::{DASHED, HEADING, INK, Look, Marker, RECORD, SOLID};
+use report::palette::{CurveStyle, DASHED, HEADING, INK, Marker, RECORD, SOLID};
 use report::{PageFigure, PlotCurve};
 use statrs::distribution::{Beta, ContinuousCDF, Normal};
 
@@ -61,12 +61,13 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
          Left: on the line they are normal and as large as the noise that was found; the band holds each of them with 95 %. \
          Right: their autocorrelation; of white innovations 95 % lies between the dashed lines.",
     );
-    let stacks = vec![quantiles(&sorted), correlation(&series)];
-    Some(PageFigure::new(stem, title, caption, Panels { stacks, ..Panels::default() }))
+    let groups = vec![quantiles(&sorted), correlation(&series)];
+    Some(PageFigure::new(stem, title, caption, Panels { groups, ..Panels::default() }))
 }
 
-/// Sorted numbers over their expected values for a normal distribution.
-fn quantiles(sorted: &[f64]) -> Stack {
+/// Q–Q plot: sorted innovations over the expected values of sorted standard normal numbers, with their pointwise 95 %
+/// band.
+fn quantiles(sorted: &[f64]) -> PanelGroup {
     let count = sorted.len();
     let outside = (1..=count)
         .filter(|&rank| !(0.025..=0.975).contains(&ordered(rank, count).cdf(Normal::standard().cdf(sorted[rank - 1]))))
@@ -82,27 +83,29 @@ fn quantiles(sorted: &[f64]) -> Stack {
         Layer::new("innovations", over(ranks.iter().map(|&rank| sorted[rank - 1]).collect()), dots),
     ];
     let row = PanelRow::zeroed(AxisSpec::decimal("innovation [sd]"), 0.32);
-    let mut stack = Stack::over(AxisSpec::decimal("normal quantile [sd]"), vec![(row, layers)]);
-    (stack.is_half, stack.zero) = (true, true);
-    stack.panels[0].head = Some(format!("{outside} of {count} outside the band"));
-    stack
+    let mut group = PanelGroup::over(AxisSpec::decimal("normal quantile [sd]"), vec![(row, layers)]);
+    (group.is_half, group.zero) = (true, true);
+    group.panels[0].head = Some(format!("{outside} of {count} outside the band"));
+    group
 }
 
 /// Autocorrelation, with the limits that contain 95 % of that of white noise.
-fn correlation(series: &GappedSeries) -> Stack {
+fn correlation(series: &GappedSeries) -> PanelGroup {
     let count = series.values.len();
     let points = autocorrelation(series, whiteness_lags(count));
     let bound = 1.96 / (count as f64).sqrt();
     let outside = points.iter().filter(|lag| lag.value.abs() > bound).count();
-    let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
+    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
     let places = points.iter().map(|lag| (lag.lag as f64 * series.spacing, lag.value, None)).collect();
     let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(AxisSpec::decimal("autocorrelation"), 0.32) };
     let thin = Pen::new(HEADING).width(0.6);
-    let mut stack =
-        Stack::over(AxisSpec::decimal("lag [s]"), vec![(row, vec![Layer::marks("", look, places).with_line(thin)])]);
-    stack.is_half = true;
-    stack.panels[0].head = Some(format!("{outside} of {} lags outside ±1.96/√n", points.len()));
-    stack
+    let mut group = PanelGroup::over(
+        AxisSpec::decimal("lag [s]"),
+        vec![(row, vec![Layer::marks("", style, places).with_line(thin)])],
+    );
+    group.is_half = true;
+    group.panels[0].head = Some(format!("{outside} of {} lags outside ±1.96/√n", points.len()));
+    group
 }
 
 #[cfg(test)]
@@ -119,11 +122,11 @@ mod tests {
         assert!((order_quantile(50, 50, 0.975) + smallest).abs() < 1e-6, "the largest mirrors it");
     }
 
-    fn stacks(values: &[f64]) -> (String, Vec<Stack>) {
+    fn groups(values: &[f64]) -> (String, Vec<PanelGroup>) {
         let time = (0..values.len()).map(|row| 0.5 * row as f64).collect();
         let figure = figure("innovations".into(), "run", &[time, values.to_vec()]).expect("many");
         let report::figures::Plot::Panels(panels) = figure.plot else { panic!("panels") };
-        (figure.finding, panels.stacks)
+        (figure.finding, panels.groups)
     }
 
     #[test]
@@ -131,15 +134,15 @@ mod tests {
         let count = 101;
         // The quantiles themselves, in an order without a pattern.
         let normal: Vec<f64> = (0..count).map(|row| expected(1 + row * 37 % count, count)).collect();
-        let (title, good) = stacks(&normal);
+        let (title, good) = groups(&normal);
         assert_eq!(good[0].panels[0].head.as_deref(), Some("0 of 101 outside the band"), "{title}");
         let twice: Vec<f64> = normal.iter().map(|value| 2.0 * value).collect();
-        let head = stacks(&twice).1[0].panels[0].head.clone().unwrap_or_default();
+        let head = groups(&twice).1[0].panels[0].head.clone().unwrap_or_default();
         let outside: usize = head.split(' ').next().and_then(|count| count.parse().ok()).expect("a number");
         assert!(outside > 50, "{head}");
         let mut slow = normal.clone();
         slow.sort_by(f64::total_cmp);
-        let (title, coloured) = stacks(&slow);
+        let (title, coloured) = groups(&slow);
         assert_eq!(title, "run: innovations are not white, p < 0.0001 (Ljung–Box, 20 lags)");
         assert_eq!(coloured[1].panels[0].head.as_deref(), Some("20 of 20 lags outside ±1.96/√n"));
     }

@@ -3,7 +3,9 @@
 
 use campaign::design::Design;
 use campaign::scenario::Highlight;
-use report::figures::{CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, Panels, Pen, Plot, Stack};
+use report::figures::{
+    CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, PanelGroup, Panels, Pen, Plot,
+};
 use report::number::{counted, significant};
 use report::palette::{QUIET, RECORD};
 use report::{CurveOrigin, PageFigure, PlotCurve};
@@ -16,7 +18,8 @@ use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// Remark on the trials behind every value, with their number or its range; the rows of measured records have theirs.
+/// Remark on the number of trials behind every value, or its range over the cells; for measured records the meaning of
+/// n, whose value is in the name of each row.
 pub fn trials_remark(design: &Design) -> String {
     if design.is_measured() {
         return String::from("n: predicted records.");
@@ -32,10 +35,10 @@ pub fn count_range(counts: &[u64]) -> String {
     if least < most { format!("{least} to {most}") } else { most.to_string() }
 }
 
-/// Remark on the trials of a figure.
-pub const SIMULATED: &str = "Simulated trials.";
+/// Remark under a figure of simulated trials.
+pub const SIMULATED_REMARK: &str = "Simulated trials.";
 
-/// Begins the remarks under a figure with the remark on its trials; a zig-zag has it in its caption.
+/// Puts the remark on its trials before the other remarks under a figure, or at the end of the caption of a zig-zag.
 pub fn add_trials_remark(figure: &mut PageFigure, remark: &str) {
     match figure.plot.note() {
         Some(note) => *note = Some([Some(remark), note.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ")),
@@ -62,8 +65,8 @@ pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
     plot
 }
 
-/// Layers that are not highlighted, in pale colours. Several share one name, at the line in the middle of those
-/// that end in the figure.
+/// Layers that are not highlighted, in pale colours. Several layers share a single name, at the median of the lines
+/// that end with a finite value.
 fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
     let mut layers: Vec<Layer> = quiet.into_iter().map(pale).collect();
     if names.len() < 2 {
@@ -87,14 +90,15 @@ fn pale(mut layer: Layer) -> Layer {
             layer.kind = LayerKind::Line(Pen { opacity: 0.45, ..Pen::new(RECORD).width(0.6) });
             layer.curve.y.iter_mut().filter(|y| y.is_infinite()).for_each(|y| *y = f64::NAN);
         }
-        LayerKind::Marks(marks) => (marks.look.colour, marks.intervals) = (QUIET, Vec::new()),
+        LayerKind::Marks(marks) => (marks.style.colour, marks.intervals) = (QUIET, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
         LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(_) => {}
     }
     layer.within(ASIDE)
 }
 
-/// Highlights layers; returns a remark on methods that are missing in a panel.
+/// Highlights layers of panels; returns remarks on missing methods and on grey lines beyond the axes, `None` without
+/// any.
 fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let about = &highlight.method_labels();
     let Highlight { rows, over_bound, .. } = highlight;
@@ -103,20 +107,20 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let (mut are_exact, mut are_cut, mut are_low, mut are_missing) = (false, false, false, false);
     let mut has_grey = false;
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
-    for stack in &mut data.stacks {
-        if stack.columns.is_some() {
+    for group in &mut data.groups {
+        if group.columns.is_some() {
             // Small multiples show one method each.
-            stack.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
+            group.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
         }
-        keep_t(stack);
+        keep_t(group);
         let is_shown = |layer: &&Layer| !is_quiet(layer.name.as_ref(), about);
-        let shown = stack.panels.iter().flat_map(|panel| &panel.layers).filter(is_shown);
+        let shown = group.panels.iter().flat_map(|panel| &panel.layers).filter(is_shown);
         are_exact |= shown.flat_map(|layer| &layer.curve.y).any(|y| *y == MIN_ERROR);
-        let names = stack.panels.iter().flat_map(|panel| &panel.layers).filter_map(|layer| layer.name.clone());
+        let names = group.panels.iter().flat_map(|panel| &panel.layers).filter_map(|layer| layer.name.clone());
         let quiet_names = distinct(names.filter(|name| is_quiet(Some(name), about)));
-        let unit = stack.rows.first().map_or_else(String::new, |row| unit_suffix(&row.y.title));
-        for panel in &mut stack.panels {
+        let unit = group.rows.first().map_or_else(String::new, |row| unit_suffix(&row.y.title));
+        for panel in &mut group.panels {
             let (quiet, shown): (Vec<Layer>, Vec<Layer>) =
                 panel.layers.drain(..).partition(|layer| is_quiet(layer.name.as_ref(), about));
             are_cut |= quiet.iter().any(|layer| layer.curve.y.iter().any(|y| y.is_infinite()));
@@ -128,12 +132,12 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             panel.detail = shown_over_bound(&shown).filter(|_| *over_bound);
             panel.layers.extend(shown.into_iter().chain(values));
         }
-        data.names_aside = stack.panels.iter().all(has_distinct_names);
+        data.names_aside = group.panels.iter().all(has_distinct_names);
         let marked = |panel: &LayeredPanel| panel.layers.iter().filter_map(marks).collect::<Vec<_>>();
-        let all = distinct(stack.panels.iter().flat_map(marked));
-        let is_of_intervals = stack.rows.iter().any(|row| row.y.title.contains("interval"));
+        let all = distinct(group.panels.iter().flat_map(marked));
+        let is_of_intervals = group.rows.iter().any(|row| row.y.title.contains("interval"));
         let kind = if is_of_intervals { "intervals" } else { "answers" };
-        for panel in &stack.panels {
+        for panel in &group.panels {
             let missing = all.iter().filter(|name| !marked(panel).contains(name));
             notes.extend(missing.zip(&panel.head).map(|(name, head)| format!("{head}: {name} gives too few {kind}.")));
         }
@@ -156,7 +160,7 @@ fn shown_over_bound(layers: &[Layer]) -> Option<String> {
     Some(if least == most { format!("{least}×") } else { format!("{least}–{most}×") })
 }
 
-/// `true` if every name of a panel has one layer, and its own colour.
+/// `true` if every named layer of a panel has a name and a colour that no other named layer has.
 fn has_distinct_names(panel: &LayeredPanel) -> bool {
     let named: Vec<&Layer> = panel.layers.iter().filter(|layer| layer.name.is_some()).collect();
     let colours = named.iter().map(|layer| layer.colour()).map(|colour| (colour.0, colour.1, colour.2));
@@ -182,15 +186,15 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
 }
 
 /// Removes the rows of K and moves their heads to the remaining rows.
-fn keep_t(stack: &mut Stack) {
-    let across = stack.x.len();
-    let heads: Vec<Option<String>> = stack.panels.iter_mut().map(|panel| panel.head.take()).collect();
-    let is_kept: Vec<bool> = stack.rows.iter().map(|row| !is_of_k(&row.y.title)).collect();
+fn keep_t(group: &mut PanelGroup) {
+    let across = group.x.len();
+    let heads: Vec<Option<String>> = group.panels.iter_mut().map(|panel| panel.head.take()).collect();
+    let is_kept: Vec<bool> = group.rows.iter().map(|row| !is_of_k(&row.y.title)).collect();
     let mut row = 0..;
-    stack.panels.retain(|_| row.next().is_some_and(|panel| is_kept[panel / across]));
-    stack.rows.retain(|row| !is_of_k(&row.y.title));
-    stack.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
-    stack.rows.iter_mut().for_each(|row| row.height = 0.34);
+    group.panels.retain(|_| row.next().is_some_and(|panel| is_kept[panel / across]));
+    group.rows.retain(|row| !is_of_k(&row.y.title));
+    group.panels.iter_mut().zip(heads).for_each(|(panel, head)| panel.head = head);
+    group.rows.iter_mut().for_each(|row| row.height = 0.34);
 }
 
 /// Keeps the highlighted panels and rows, and outlines the highlighted cells. All other rows with the same name up to a
@@ -255,7 +259,7 @@ fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
 #[cfg(test)]
 mod tests {
     use report::figures::{AxisSpec, NamedRows, PanelRow, RowItem, RowKind, RowsColumn};
-    use report::palette::Look;
+    use report::palette::CurveStyle;
 
     use super::super::key_rows::tint;
     use super::*;
@@ -264,8 +268,8 @@ mod tests {
         Highlight { series: vec![String::from("output-error")], ..Highlight::default() }
     }
 
-    fn method(id: &str) -> (String, Look) {
-        (id.to_owned(), CurveOrigin::Method(id.to_owned()).look())
+    fn method(id: &str) -> (String, CurveStyle) {
+        (id.to_owned(), CurveOrigin::Method(id.to_owned()).style())
     }
 
     #[test]
@@ -278,14 +282,14 @@ mod tests {
             ..LayeredPanel::default()
         };
         let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
-        let stack = Stack {
+        let group = PanelGroup {
             x: vec![AxisSpec::decimal("x"); 2],
             rows: titles.iter().map(|title| PanelRow::new(AxisSpec::decimal(*title), 0.2)).collect(),
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
-            ..Stack::default()
+            ..PanelGroup::default()
         };
-        let Plot::Panels(data) = highlighted_chart(Panels::new(stack).into(), &about_output_error()) else { panic!() };
-        let panels = &data.stacks[0].panels;
+        let Plot::Panels(data) = highlighted_chart(Panels::new(group).into(), &about_output_error()) else { panic!() };
+        let panels = &data.groups[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
         assert_eq!(panels[1].head.as_deref(), Some("column 1"));
@@ -293,7 +297,7 @@ mod tests {
         let names: Vec<Option<&str>> = panels[0].layers.iter().map(|layer| layer.name.as_deref()).collect();
         assert_eq!(names, [Some("srivc"), Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
-        assert_eq!((marks.look.colour, panels[0].layers[0].room), (QUIET, Some(ASIDE)));
+        assert_eq!((marks.style.colour, panels[0].layers[0].max_axis_widening), (QUIET, Some(ASIDE)));
         assert_eq!(data.note, None);
     }
 
@@ -321,8 +325,8 @@ mod tests {
 
     #[test]
     fn rows_that_a_figure_is_about_have_their_value_beside_them() {
-        let (name, look) = method("output-error");
-        let row = |value: f64| vec![RowItem::mark_below(name.as_str(), look, value, None)];
+        let (name, style) = method("output-error");
+        let row = |value: f64| vec![RowItem::mark_below(name.as_str(), style, value, None)];
         let column = RowsColumn {
             x: AxisSpec::decimal("error of T [%]"),
             rows: vec![row(1.25), row(2.0)],
@@ -334,7 +338,7 @@ mod tests {
         let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
             RowItem { kind: RowKind::Mark(drawn, ..), number, .. } => {
-                (drawn.colour == tint(look.colour), number.as_deref())
+                (drawn.colour == tint(style.colour), number.as_deref())
             }
             _ => panic!(),
         };
@@ -355,17 +359,19 @@ mod tests {
             layer("srivc", 9.0),
             Layer::line(CurveOrigin::Bound.label(), PlotCurve::new(vec![2.0, 5.0], vec![0.1, 0.15]), Pen::new(QUIET)),
         ];
-        let stack =
-            Stack::over(AxisSpec::decimal("executes"), vec![(PanelRow::new(AxisSpec::decimal("T [%]"), 0.2), layers)]);
+        let group = PanelGroup::over(
+            AxisSpec::decimal("executes"),
+            vec![(PanelRow::new(AxisSpec::decimal("T [%]"), 0.2), layers)],
+        );
         let highlight = Highlight {
             series: vec!["output-error".into()],
             scored: vec!["maximum-likelihood".into()],
             rows: vec!["2".into()],
             over_bound: true,
         };
-        let data = Panels { note: Some(String::from("Marks.")), ..Panels::new(stack) };
+        let data = Panels { note: Some(String::from("Marks.")), ..Panels::new(group) };
         let Plot::Panels(data) = highlighted_chart(data.into(), &highlight) else { panic!() };
-        let layers = &data.stacks[0].panels[0].layers;
+        let layers = &data.groups[0].panels[0].layers;
         let labels = layers.iter().filter_map(|layer| match &layer.kind {
             LayerKind::Labels(labels) => Some((layer.curve.x.clone(), labels.clone())),
             _ => None,
@@ -376,14 +382,15 @@ mod tests {
         );
         // Those that are not highlighted are pale lines with one name.
         let pale = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Line(pen) if pen.colour == RECORD));
-        let pale: Vec<_> = pale.map(|layer| (layer.name.as_deref(), layer.curve.y.clone(), layer.room)).collect();
-        let [(name, ends, room), (None, gap, _)] = &pale[..] else { panic!("{pale:?}") };
-        assert_eq!((*name, &ends[..], *room), (Some("2 other methods"), &[9.0, 27.0][..], Some(ASIDE)));
+        let pale: Vec<_> =
+            pale.map(|layer| (layer.name.as_deref(), layer.curve.y.clone(), layer.max_axis_widening)).collect();
+        let [(name, ends, widening), (None, gap, _)] = &pale[..] else { panic!("{pale:?}") };
+        assert_eq!((*name, &ends[..], *widening), (Some("2 other methods"), &[9.0, 27.0][..], Some(ASIDE)));
         assert!(gap.iter().all(|y| y.is_nan()));
         let note =
             "×: times the Cramér–Rao bound, methods in colour. Marks. Grey lines end where an error exceeds 100 %.";
         assert_eq!(data.note.as_deref(), Some(note));
-        assert_eq!(data.stacks[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
+        assert_eq!(data.groups[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
     }
 
     #[test]

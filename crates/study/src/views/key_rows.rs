@@ -5,9 +5,9 @@ use campaign::statistics::distinct;
 use report::CurveOrigin;
 use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{counted, fixed, significant};
-use report::palette::{Look, QUIET, RECORD, RGBColor};
+use report::palette::{CurveStyle, QUIET, RECORD, RGBColor};
 
-use super::pooled_charts::{ALL_CELLS_ROW, COUNT};
+use super::pooled_charts::{ALL_CELLS_ROW, COUNT_PREFIX};
 
 /// Maximum number of rows that all have their values written.
 const MAX_NUMBERED_ROWS: usize = 10;
@@ -15,7 +15,8 @@ const MAX_NUMBERED_ROWS: usize = 10;
 /// Strength of the colour of marks in rows that are not highlighted.
 const TINT: f64 = 0.5;
 
-/// `true` if a layer or a row with this name is not highlighted.
+/// `true` if a layer or a row has the name of a method that is not highlighted; `false` if `about`, the highlighted
+/// labels, is empty.
 pub fn is_quiet(name: Option<&String>, about: &[String]) -> bool {
     let is_method = |name: &String| name != CurveOrigin::Bound.label();
     // A line of rules is identified by the common beginning of their labels.
@@ -34,13 +35,13 @@ pub fn unit_suffix(title: &str) -> String {
     units.iter().find(|(end, _)| title.ends_with(end)).map_or_else(String::new, |(_, unit)| (*unit).to_owned())
 }
 
-/// Pale tint of a colour, which still tells it from others.
+/// Pale tint of a colour; tints of different colours differ.
 pub fn tint(colour: RGBColor) -> RGBColor {
     let pale = |part: u8| u8::MAX - (f64::from(u8::MAX - part) * TINT) as u8;
     RGBColor(pale(colour.0), pale(colour.1), pale(colour.2))
 }
 
-/// Highlights rows; returns a remark on their colours.
+/// Highlights rows; returns a remark on the dark rows, `None` if no row is pale.
 pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
     let about = &highlight.method_labels();
     let Highlight { rows, over_bound, .. } = highlight;
@@ -49,9 +50,9 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
         for (item, name) in
             column.rows.iter_mut().zip(&data.names).flat_map(|(row, name)| row.iter_mut().map(move |item| (item, name)))
         {
-            let RowKind::Violin(look, density, quantiles) = &mut item.kind else { continue };
+            let RowKind::Violin(style, density, quantiles) = &mut item.kind else { continue };
             if !about.is_empty() && !about.contains(name) {
-                look.colour = tint(look.colour);
+                style.colour = tint(style.colour);
             }
             if about.contains(name) {
                 column.included_values.extend(density.iter().map(|(value, _)| *value));
@@ -81,7 +82,7 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
 
 /// `true` for a row that is not highlighted.
 fn is_pale(name: &str, about: &[String]) -> bool {
-    let label = name.split_once(COUNT).map_or(name, |(label, _)| label);
+    let label = name.split_once(COUNT_PREFIX).map_or(name, |(label, _)| label);
     !about.iter().any(|row| row == label)
 }
 
@@ -97,15 +98,15 @@ fn sort_rows(data: &mut NamedRows, about: &[String]) {
 
 /// Marks that are not highlighted: those of a single method in grey, those of several as a range.
 fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
-    let marks: Vec<(Look, f64)> = quiet
+    let marks: Vec<(CurveStyle, f64)> = quiet
         .iter()
-        .filter_map(|item| if let RowKind::Mark(look, value, _) = item.kind { Some((look, value)) } else { None })
+        .filter_map(|item| if let RowKind::Mark(style, value, _) = item.kind { Some((style, value)) } else { None })
         .collect();
     let values = || marks.iter().map(|(_, value)| *value);
     let range = [values().reduce(f64::min)?, values().reduce(f64::max)?];
     let range = |name: String| RowItem::new(format!("{name}, range"), RowKind::Range(RECORD, range));
     let item = match names {
-        [name] => RowItem::new(name, RowKind::Mark(Look { colour: QUIET, ..marks[0].0 }, marks[0].1, None)),
+        [name] => RowItem::new(name, RowKind::Mark(CurveStyle { colour: QUIET, ..marks[0].0 }, marks[0].1, None)),
         [first, second] => range(format!("{first} and {second}")),
         _ => range(counted(names.len() as u64, "other")),
     };
@@ -122,8 +123,8 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
         let limit = row.iter().find_map(|item| if let RowKind::Limit(limit) = item.kind { Some(limit) } else { None });
         let limit = limit.filter(|_| over_bound);
         for item in row {
-            let RowKind::Mark(look, value, _) = &mut item.kind else { continue };
-            let is_quiet = look.colour == QUIET;
+            let RowKind::Mark(style, value, _) = &mut item.kind else { continue };
+            let is_quiet = style.colour == QUIET;
             if !(is_quiet || is_long && is_pale) {
                 item.number = Some(match limit {
                     Some(limit) => format!("{}×", significant(*value / limit, 2)),
@@ -132,9 +133,9 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
                 });
             }
             if is_pale {
-                // The key shows the looks of the highlighted rows.
+                // The key shows the styles of the highlighted rows.
                 item.name = None;
-                look.colour = if is_quiet { look.colour } else { tint(look.colour) };
+                style.colour = if is_quiet { style.colour } else { tint(style.colour) };
             }
         }
     }

@@ -96,7 +96,7 @@ mod tests {
         let estimate = |stop, inverse_time| Estimate {
             response: FirstOrder { inverse_T: inverse_time, K_over_T: 0.01, rudder_bias: 0.0 },
             uncertainty: Uncertainty::None { reason: "not asked for" },
-            robust: None,
+            robust_covariance: None,
             stop,
             evaluations: 1,
             noise: None,

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use document::names;
-use document::trace::{MissingMomentEntry, PanelEntry};
-use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack};
+use document::trace::{ChannelCurveEntry, MissingMomentEntry};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelGroup, PanelRow, Panels, Pen};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{PlotCurve, symbol};
@@ -51,42 +51,48 @@ fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], 
     layers
 }
 
-/// Figure of one record.
+/// Panels of the missing moment of a record: over time, and over the channels on which it depends.
 pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
     let cause = entry.explanation.as_ref();
     let over = |x: AxisSpec, height: f64, reach: f64, layers: Vec<Layer>| {
         let moment = AxisSpec::decimal("moment [° rudder]").within(reach, Some(0.0));
-        Stack::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
+        PanelGroup::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |values: &Vec<f64>| PlotCurve::new(curves.time.clone(), values.clone());
     let [lower, upper] = &curves.band;
     let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
-    let mut stacks = vec![over(AxisSpec::time(), 0.24, REACHES[0], moment)];
-    let panels = entry.channel_curves.iter().zip(&curves.over);
-    let (shown, undrawn): (Vec<_>, Vec<_>) = panels.partition(|(panel, _)| panel.is_significant);
-    stacks.extend(shown.into_iter().take(MAX_PANELS).map(|(panel, channel): (&PanelEntry, &ChannelCurve)| {
-        let ChannelCurve { moment, half_width, .. } = channel;
-        let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
-        let edge = |side: f64| curve(moment.iter().zip(half_width).map(|(m, half)| m + side * half).collect());
-        let rows = PlotCurve::new(channel.rows.clone(), curves.moment.clone());
-        let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
-        layers.extend(banded(cause, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(channel.explained.clone())));
-        let mut stack = over(
-            AxisSpec::decimal(channel.over.map_or_else(|| panel.channel.clone(), title_of)),
-            0.2,
-            REACHES[1],
-            layers,
-        );
-        (stack.panels[0].head, stack.is_half) = (Some(percent(panel.variance_share)), true);
-        stack
-    }));
-    let undrawn: Vec<&str> = undrawn.iter().map(|(panel, _)| panel.channel.as_str()).collect();
+    let mut groups = vec![over(AxisSpec::time(), 0.24, REACHES[0], moment)];
+    let channels = entry.channel_curves.iter().zip(&curves.by_channel);
+    let (shown, undrawn): (Vec<_>, Vec<_>) = channels.partition(|(channel, _)| channel.is_significant);
+    groups.extend(shown.into_iter().take(MAX_PANELS).map(
+        |(channel_entry, channel): (&ChannelCurveEntry, &ChannelCurve)| {
+            let ChannelCurve { moment, half_width, .. } = channel;
+            let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
+            let edge = |side: f64| curve(moment.iter().zip(half_width).map(|(m, half)| m + side * half).collect());
+            let rows = PlotCurve::new(channel.channel_values.clone(), curves.moment.clone());
+            let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
+            layers.extend(banded(
+                cause,
+                [curve(moment.clone()), edge(-1.0), edge(1.0)],
+                curve(channel.explained.clone()),
+            ));
+            let mut group = over(
+                AxisSpec::decimal(channel.channel.map_or_else(|| channel_entry.channel.clone(), title_of)),
+                0.2,
+                REACHES[1],
+                layers,
+            );
+            (group.panels[0].head, group.is_half) = (Some(percent(channel_entry.variance_share)), true);
+            group
+        },
+    ));
+    let undrawn: Vec<&str> = undrawn.iter().map(|(channel, _)| channel.channel.as_str()).collect();
     let undrawn = match undrawn.is_empty() {
         true => String::new(),
         false => format!(" Not drawn, because the band includes zero: {}.", undrawn.join(", ")),
     };
     let note = Some(format!("Over a channel, moments beyond {} times the usual size are cut.{undrawn}", REACHES[1]));
-    Panels { stacks, note, ..Panels::default() }
+    Panels { groups, note, ..Panels::default() }
 }
 
 /// Finding: size of the moment of one record and the channel with the highest share of its variance.

@@ -39,8 +39,8 @@ fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -
     lines.iter().map(of_line).sum()
 }
 
-/// Map with one row for every ship and one column for every judgement; cells that differ in further axes are one row.
-/// `None` for a study that states no outcome.
+/// Finding, and map with a row for every ship and a column for every judgement; cells that differ in further axes are
+/// one row. `None` for a study that states no outcome.
 pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMap)> {
     let judged = judged(design, lines);
     let ships = grouped(judged.iter().copied(), |(line, physics): &JudgedLine| {
@@ -54,7 +54,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
         MapCell {
             value: share.map(|share| share.value),
             interval: share.and_then(|share| share.ci95),
-            outline: judgement.is_right(lines[0].1).then_some(Outline::Right),
+            outline: judgement.is_right(lines[0].1).then_some(Outline::Correct),
             trials: trials(lines),
         }
     };

@@ -6,12 +6,12 @@ use document::trace::{RecordEntry, TraceDocument};
 use estimation::statistics::median;
 use report::figures::{AxisSpec, NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{MISSING, counted};
-use report::palette::{Look, Marker};
+use report::palette::{CurveStyle, Marker};
 use report::{CurveOrigin, PageFigure};
 use ship::angle::to_deg;
 use trial::{ZigZag, imo};
 
-use super::record_study::degrees;
+use super::record_study::degrees_text;
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// First or second overshoot of a record, measured and replayed, degrees; only these two have an IMO limit.
@@ -24,7 +24,7 @@ pub struct ReplayedOvershoot<'a> {
     /// IMO limit; `None` if no criterion applies to the record.
     limit: Option<f64>,
     /// Maximum rudder of the record, rad.
-    rudder: f64,
+    rudder_rad: f64,
 }
 
 /// Overshoots of all records, in ascending order of the rudder.
@@ -44,10 +44,10 @@ pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves
             });
             let replayed = replays.each_ref().map(|replay| replay.as_ref().and_then(angle));
             let limit = limit.map(|limit| limit.limit);
-            all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder: trial.largest_rudder() });
+            all.push(ReplayedOvershoot { record, word, measured, replayed, limit, rudder_rad: trial.largest_rudder() });
         }
     }
-    all.sort_by(|a, b| a.rudder.total_cmp(&b.rudder));
+    all.sort_by(|a, b| a.rudder_rad.total_cmp(&b.rudder_rad));
     all
 }
 
@@ -56,7 +56,7 @@ pub struct OvershootError {
     /// Median absolute error, degrees; `None` if the replay has no overshoot.
     pub median_deg: Option<f64>,
     /// Number of measured overshoots.
-    pub measured: usize,
+    pub measured_count: usize,
     /// Number of measured overshoots without a replayed one.
     pub missing: usize,
 }
@@ -68,19 +68,19 @@ pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [Oversh
         let distance = |overshoot: &ReplayedOvershoot| Some((overshoot.replayed[model]? - overshoot.measured).abs());
         let mut distances: Vec<f64> = judged().filter_map(distance).collect();
         let (measured, replayed) = (judged().count(), distances.len());
-        OvershootError { median_deg: median(&mut distances), measured, missing: measured - replayed }
+        OvershootError { median_deg: median(&mut distances), measured_count: measured, missing: measured - replayed }
     })
 }
 
 /// Items of the row of an overshoot: measured bar, limit and both replays, each with its error as a number.
 fn row_items(overshoot: &ReplayedOvershoot) -> Vec<RowItem> {
     // One mark above the other, so that both are visible.
-    let mark = |name: &str, origin: CurveOrigin, aside: f64, value: Option<f64>| {
-        let number = Some(degrees((value? - overshoot.measured).abs()));
-        let item = RowItem::new(name, RowKind::Mark(origin.look(), value?, None)).clipped_if_far();
-        Some(RowItem { place: RowPlace::Aside(aside), number, ..item })
+    let mark = |name: &str, origin: CurveOrigin, shift: f64, value: Option<f64>| {
+        let number = Some(degrees_text((value? - overshoot.measured).abs()));
+        let item = RowItem::new(name, RowKind::Mark(origin.style(), value?, None)).clipped_if_far();
+        Some(RowItem { place: RowPlace::Shifted(shift), number, ..item })
     };
-    let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
+    let measured = CurveStyle { marker: Marker::Square, ..CurveOrigin::Record.style() };
     let items = [
         Some(RowItem::new("measured", RowKind::Bar(measured, overshoot.measured))),
         overshoot.limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit))),
@@ -97,13 +97,13 @@ fn note(all: &[ReplayedOvershoot]) -> String {
     format!("Numbers: errors.{missing}")
 }
 
-/// Figure of the first two overshoots of every zig-zag and of both replays, shaded if the rudder is no larger than in
-/// the fitted records; `None` if no record is a zig-zag.
+/// Figure of the first two overshoots of every zig-zag and of both replays; if some records have more rudder than the
+/// fitted records, the rows of all others are shaded; `None` if no record is a zig-zag.
 pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     let held_out = document.records.iter().filter(|record| record.held_out).count();
     let errors = errors_before_after(all, held_out > 0);
     let medians = errors.iter().map(|error| RowItem {
-        number: Some(error.median_deg.map_or_else(|| MISSING.to_owned(), degrees)),
+        number: Some(error.median_deg.map_or_else(|| MISSING.to_owned(), degrees_text)),
         ..RowItem::new("", RowKind::Heading)
     });
     let rows = all.iter().map(row_items).chain([medians.collect()]).collect();
@@ -114,7 +114,7 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         format!("{}: {place}{used}", names::record(&overshoot.record.name))
     };
     let seen = document.ship.validity_range.rudder_rad;
-    let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder <= seen);
+    let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder_rad <= seen);
     let shaded = (!beyond.is_empty()).then(|| (String::from("rudder within that of the fit"), within));
     let data = NamedRows {
         names: all
@@ -128,9 +128,9 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
         ..NamedRows::default()
     };
     let error_words = |error: OvershootError| {
-        let off = error.median_deg.map_or_else(|| MISSING.to_owned(), degrees);
+        let off = error.median_deg.map_or_else(|| MISSING.to_owned(), degrees_text);
         let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
-        (off, missing, error.measured)
+        (off, missing, error.measured_count)
     };
     let [(before, no_before, count), (after, no_after, _)] = errors.map(error_words);
     let of_records = match held_out {

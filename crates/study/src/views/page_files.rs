@@ -10,10 +10,10 @@ use report::{Page, PageFigure, Theme};
 use crate::documents;
 
 /// Name of the page in Markdown.
-pub const REPORT: &str = "report.md";
+pub const MARKDOWN_REPORT_FILE: &str = "report.md";
 
 /// Name of the page for a browser, a single file.
-pub const BROWSER: &str = "report.html";
+pub const HTML_REPORT_FILE: &str = "report.html";
 
 /// File stem of the key figure of a page.
 pub const KEY_FIGURE: &str = "hero";
@@ -30,14 +30,14 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
     }
     let markdown = page.to_markdown();
     let browser = html::page(&markdown, &page.folded_titles(), &|stem| FigureFiles::written(folder.path(), stem));
-    folder.write(REPORT, markdown)?;
-    folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
+    folder.write(MARKDOWN_REPORT_FILE, markdown)?;
+    folder.write(HTML_REPORT_FILE, browser.on("make", &folder.path().join(HTML_REPORT_FILE))?)
 }
 
 /// Removes the figures of the former page in this folder, which may be of another ship. Figures that are made again are
 /// kept.
 fn remove_former(folder: &ResultFolder, page: &Page) -> Result<(), Failure> {
-    let place = folder.path().join(REPORT);
+    let place = folder.path().join(MARKDOWN_REPORT_FILE);
     let former = disk::read(&place, documents::MAX_FILE_BYTES).on("read", &place)?.unwrap_or_default();
     let former = String::from_utf8_lossy(&former);
     let images = former.split("](").filter_map(|link| link.split_once(')')?.0.strip_suffix(".png"));

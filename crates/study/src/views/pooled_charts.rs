@@ -6,8 +6,8 @@ use campaign::statistics::{NORMAL_QUANTILE_95, Statistic, distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
 use report::figures::{
-    AxisSpec, CellMap, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind,
-    RowPlace, RowsColumn, Shades, Stack, TickRule,
+    AxisSpec, CellMap, Layer, LayerKind, LayeredPanel, MapCell, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem,
+    RowKind, RowPlace, RowsColumn, Shades, TickRule,
 };
 use report::number::significant;
 use report::palette::{DASHED, DOTTED, INK};
@@ -18,7 +18,8 @@ use super::charts::{ErrorMeasure, comparable_methods, curve_origin, rms_title};
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
 
-/// Maps of the errors of K, of T and of the validation for a design of two axes: stems, captions and maps.
+/// Maps of the errors of K, of T and of the validation for a design of two axes: stem, title of the quantity, and map
+/// of each; empty if an axis has fewer than three points.
 pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].clone()));
     if design.axes.len() != 2 {
@@ -77,8 +78,8 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
         x: AxisSpec::decimal(title).within(MAX_SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
-                let look = curve_origin(design, method).look();
-                let violin = |pdf: &summary::ErrorDensity| RowKind::Violin(look, pdf.density.clone(), pdf.quantiles);
+                let style = curve_origin(design, method).style();
+                let violin = |pdf: &summary::ErrorDensity| RowKind::Violin(style, pdf.density.clone(), pdf.quantiles);
                 density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
             })
             .collect(),
@@ -87,10 +88,10 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     };
     let of_cell = |detail: &CellDetail| {
         let columns = vec![
-            column(detail, "error of K [%]", |detail| &detail.violin_k),
-            column(detail, "error of T [%]", |detail| &detail.violin_t),
+            column(detail, "error of K [%]", |detail| &detail.k_errors),
+            column(detail, "error of T [%]", |detail| &detail.t_errors),
         ];
-        let trials = summary.performance(detail.cell, 0).map_or(0, |record| record.trials);
+        let trials = summary.performance(detail.cell, 0).map_or(0, |performance| performance.trials);
         let is_drawn = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
         let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
         let note =
@@ -118,8 +119,8 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
             let ellipse = cloud
                 .map_or_else(PlotCurve::default, |cloud| PlotCurve::contour95(cloud.centre.into(), cloud.covariance));
             let mut layers = vec![
-                Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.look().colour)),
-                Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),
+                Layer::new("", PlotCurve { x, y }, LayerKind::Cloud(origin.style().colour)),
+                Layer::line("", ellipse, Pen::new(origin.style().colour).width(1.3)),
             ];
             let pen = Pen { dash: DOTTED, ..Pen::from_origin(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
@@ -141,10 +142,10 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
         let axis = |index: &str| AxisSpec::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
         let panels = near.into_iter().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
-        let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
+        let multiples = PanelGroup::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
         let points =
             detail.methods.iter().flat_map(|fit| &fit.cloud).map(|cloud| cloud.points.len()).max().unwrap_or(0);
-        let trials = summary.performance(detail.cell, 0).map_or(0, |record| record.trials);
+        let trials = summary.performance(detail.cell, 0).map_or(0, |performance| performance.trials);
         let mut note = format!(
             "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}. 95 % \
              intervals of the multiples of the bound: ±{:.1} %.",
@@ -154,15 +155,15 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
         }
-        let data = Panels { note: Some(note), ..Panels::new(Stack { zero: true, ..multiples }) };
+        let data = Panels { note: Some(note), ..Panels::new(PanelGroup { zero: true, ..multiples }) };
         let is_drawn = detail.methods.iter().any(|detail| detail.cloud.is_some());
         is_drawn.then_some((detail.cell, bound.is_some(), data))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
 
-/// K and T estimated by the reference method at the named points of the last axis, relative to those at the first
-/// point, one series for every point of the other axes; with the label of the method. `None` if all ships are of first
+/// Mean K and T by the reference method at the named points of the last axis, relative to those at the first point,
+/// with a series for every point of the other axes; and the label of the method. `None` if all ships are of first
 /// order, if the study has traces, or if the last axis has numbers or a single point.
 pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(NamedRows, String)> {
     let last = design.axes.len().checked_sub(1)?;
@@ -176,8 +177,8 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
         return None;
     }
     let answer = |cell: usize, panel: usize| {
-        let record = summary.performance(cell, summary.reference)?;
-        [&record.k, &record.t][panel].answer
+        let performance = summary.performance(cell, summary.reference)?;
+        [&performance.k, &performance.t][panel].mean_estimate
     };
     let column = |panel: usize, symbol: &str| {
         let row = |row: usize| {
@@ -185,7 +186,7 @@ pub fn ratios_to_first_point(design: &Design, summary: &Summary) -> Option<(Name
                 let first = answer(cells[0], panel)?;
                 let ratio = answer(cells[row], panel)?.times(1.0 / first.value);
                 let origin = CurveOrigin::Series { label: label.clone(), number };
-                Some(RowItem::mark_below(origin.label(), origin.look(), ratio.value, ratio.ci95))
+                Some(RowItem::mark_below(origin.label(), origin.style(), ratio.value, ratio.ci95))
             };
             series.iter().enumerate().filter_map(dot).collect()
         };
@@ -218,7 +219,9 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
         match longest.filter(|_| design.cells.len() > MAX_ROWS) {
             Some(axis) => labels[axis].clone(),
             // Records of measured rows differ in number.
-            None if design.is_measured() => format!("{}{COUNT} {})", labels.join(", "), trials.end - trials.start),
+            None if design.is_measured() => {
+                format!("{}{COUNT_PREFIX} {})", labels.join(", "), trials.end - trials.start)
+            }
             None => labels.join(", "),
         }
     };
@@ -226,7 +229,7 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
 }
 
 /// Text between the name of a row and the number of its records.
-pub const COUNT: &str = " (n =";
+pub const COUNT_PREFIX: &str = " (n =";
 
 /// Centre and ends of some values after `outer` per cent are cut at either end: the mean without a cut, else the
 /// median; `None` without values.
@@ -241,14 +244,14 @@ fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
 
 /// Row items of a prediction: the range as a bar, and the value as a mark beside it.
 fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<RowItem> {
-    let look = origin.look();
-    let range = RowItem::new(origin.label(), RowKind::Range(look.colour, ends));
-    let mark = RowItem::new(origin.label(), RowKind::Mark(look, value, None));
-    vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::Beside, ..mark }]
+    let style = origin.style();
+    let range = RowItem::new(origin.label(), RowKind::Range(style.colour, ends));
+    let mark = RowItem::new(origin.label(), RowKind::Mark(style, value, None));
+    vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::SameLine, ..mark }]
 }
 
-/// Half width of the 95 % interval of a share of 90 % of the trials of a cell, in a sentence; measured records
-/// are not independent. Characteristics of one trial may depend on each other, so it is a maximum.
+/// Sentence on the maximum half width over the cells of the 95 % interval of a share of 90 %. Characteristics of a
+/// trial may be correlated, so each trial counts once. Measured records are not independent and have no interval.
 fn certainty(design: &Design) -> String {
     let trials = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).min().unwrap_or(0);
     if design.is_measured() {
@@ -261,9 +264,9 @@ fn certainty(design: &Design) -> String {
     format!(" 95 % interval of a share of 90 %: at most ±{half_width:.0} points.")
 }
 
-/// Coverage and width of 90 % prediction intervals, by row and method: the mean share and the median width over the
-/// predicted characteristics, on the range of the shares and of the middle half of the widths; `None` without
-/// predictions.
+/// Coverage and width of 90 % prediction intervals, by row and method: as marks the mean share and the median width
+/// over the predicted characteristics, as bars the range of the shares and the middle half of the widths; `None`
+/// without predictions.
 pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRows> {
     type Of = fn(&PredictionSummary) -> f64;
     let rows = prediction_rows(design);

@@ -12,10 +12,10 @@ use predict::replay::{ComparedFigure, RecordReplay};
 use predict::turn::TurnTracks;
 use predict::{PredictDocument, Prediction};
 use report::figures::{
-    AxisSpec, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn, Stack,
+    AxisSpec, Layer, LayerKind, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
 };
 use report::number::{counted, fixed, significant};
-use report::palette::{BEFORE, HEADING, INK, Look, Marker, SOLID};
+use report::palette::{BEFORE, CurveStyle, HEADING, INK, Marker, SOLID};
 use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
@@ -25,7 +25,7 @@ use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
 use super::predict_curves::stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
-/// Number of ship symbols along a track.
+/// Approximate number of ship symbols along a track.
 const DRAWN_HEADINGS: usize = 12;
 
 /// All figures, in the order of the page.
@@ -156,7 +156,7 @@ fn diameter(replayed: &RecordReplay) -> String {
     format!("Tactical diameter {median} L [{low}, {high}] predicted, {measured} L measured")
 }
 
-/// Opacity of the outer band, and of the inner band over it.
+/// Opacity of the 90 % band, and of the 50 % band over it.
 const BANDS: [f64; 2] = [0.2, 0.38];
 
 /// Heading with bands and rudder over one time axis; the outer band is cut if it needs too much room.
@@ -227,9 +227,9 @@ fn track(prediction: &Prediction) -> Panels {
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
     ]);
     let row = PanelRow::new(AxisSpec::decimal("north [m]"), 0.7);
-    let stack = Stack::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
+    let group = PanelGroup::over(AxisSpec::decimal("east [m]"), vec![(row, layers.collect())]);
     let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
-    Panels { clipping_note, ..Panels::new(Stack { has_equal_scales: true, ..stack }) }
+    Panels { clipping_note, ..Panels::new(PanelGroup { has_equal_scales: true, ..group }) }
 }
 
 /// Prediction intervals of characteristics, with measured values and limits.
@@ -244,12 +244,12 @@ fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
 }
 
 fn interval(predicted: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
-    let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
+    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
         RowItem::new("90 %", RowKind::Thin(predicted.ci90)).clipped_if_far(),
         RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, predicted.ci50)),
-        RowItem::new(name, RowKind::Mark(look, predicted.median, None)),
+        RowItem::new(name, RowKind::Mark(style, predicted.median, None)),
     ]
 }
 
@@ -265,14 +265,14 @@ fn is_overshoot(name: &str) -> bool {
 
 /// Row for every overshoot of a replayed record: the predicted interval, and below it the measured angle.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
-    let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
+    let style = CurveStyle { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
             let mut items = interval(&figure.interval, replayed.extrapolated);
             // Below the bar, so that a nearby median stays visible.
-            let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
-            items.push(RowItem { place: RowPlace::Aside(0.34), ..item });
+            let item = RowItem::new("measured", RowKind::Mark(style, figure.measured, None));
+            items.push(RowItem { place: RowPlace::Shifted(0.34), ..item });
             rows.push((format!("{} {}", names::record(&replayed.name), names::figure_of_merit(name).0), items));
         }
     }

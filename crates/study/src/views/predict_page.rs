@@ -52,8 +52,8 @@ pub fn summary(document: &PredictDocument) -> String {
             file_names(&document.ballast)
         );
     }
-    for prediction in document.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
-        let lost = counted(prediction.lost as u64, "drawn ship");
+    for prediction in document.manoeuvres.iter().filter(|prediction| prediction.incomplete_draws > 0) {
+        let lost = counted(prediction.incomplete_draws as u64, "drawn ship");
         summary += &format!("{}: {lost} did not complete it\n", prediction.kind);
     }
     summary

@@ -3,9 +3,9 @@
 use document::names;
 use document::trace::{Outcome, TraceDocument};
 use report::PageFigure;
-use report::figures::{AxisSpec, Layer, PanelRow, Panels, Pen, Stack, TickRule};
+use report::figures::{AxisSpec, Layer, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::{fixed, significant};
-use report::palette::{BEFORE, DASHED, DIMENSION, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID};
+use report::palette::{BEFORE, CurveStyle, DASHED, DIMENSION, HEADING, INK, Marker, RECORD, RGBColor, RUDDER, SOLID};
 
 /// Minimum probability, at some odds, at which an unnamed effect is plotted.
 const MIN_DRAWN_PROBABILITY: f64 = 0.05;
@@ -117,9 +117,9 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
     let layer = |(number, line): (usize, &OddsLine)| {
         let colour = COLOURS[number % COLOURS.len()];
         let dash = if line.is_named { SOLID } else { DASHED };
-        let look = Look { colour, marker: MARKERS[number % MARKERS.len()], dash, hollow: !line.is_named };
+        let style = CurveStyle { colour, marker: MARKERS[number % MARKERS.len()], dash, hollow: !line.is_named };
         let points = prior.odds_factors.iter().zip(line.probability).map(|(x, y)| (*x, *y, None)).collect();
-        Layer::marks(line.name.as_str(), look, points).with_line(Pen { dash, ..Pen::new(colour) })
+        Layer::marks(line.name.as_str(), style, points).with_line(Pen { dash, ..Pen::new(colour) })
     };
     let layers = lines.iter().enumerate().map(layer).collect();
     let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32) };
@@ -130,7 +130,7 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
          named. Dashed level: an effect is named from there. Structures that the search did not fit have no part in it."
     );
     let finding = format!("Prior odds × {least} to × {most}: {}", finding(&lines, prior.named_from));
-    let plot = Panels::new(Stack::over(x, vec![(row, layers)]));
+    let plot = Panels::new(PanelGroup::over(x, vec![(row, layers)]));
     (!lines.is_empty()).then(|| PageFigure::new("prior-odds", finding, caption, plot))
 }
 

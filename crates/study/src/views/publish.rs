@@ -11,7 +11,7 @@ use campaign::summary::{Summary, Tally, blind_spots};
 use rayon::prelude::*;
 use report::{Table, Theme};
 
-use super::page_files::{KEY_FIGURE, REPORT, write_page};
+use super::page_files::{KEY_FIGURE, MARKDOWN_REPORT_FILE, write_page};
 use super::record_study;
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
@@ -39,7 +39,7 @@ pub fn write_results(
                 true => record_study::on_screen(stored, &summary),
                 false => on_screen(stored, &summary),
             };
-            screen::print_lines(&format!("{text}\nreport: {}", folder.path().join(REPORT).display()))
+            screen::print_lines(&format!("{text}\nreport: {}", folder.path().join(MARKDOWN_REPORT_FILE).display()))
         }
         // Another program reads the table: standard output has no other text.
         Format::Csv => screen::print_lines(table(&summary, design).to_csv().trim_end()),
@@ -94,7 +94,7 @@ pub fn write_files(
     write_csv(folder, SUMMARY, &summary.methods, |lines| tables::summary(lines, design))?;
     if design.methods.len() > 1 {
         let reference = &design.methods[summary.reference];
-        write_csv(folder, "pairs.csv", &summary.pairs, |lines| tables::pairs(lines, reference, design))?;
+        write_csv(folder, "pairs.csv", &summary.comparisons, |lines| tables::pairs(lines, reference, design))?;
     }
     write_trace_tables(&summary, design, folder)?;
     if !summary.predictions.is_empty() {
@@ -109,7 +109,7 @@ pub fn write_files(
     }
     folder.write("summary.tex", for_paper(&summary, stored))?;
     let figures = study_figures::figures(stored, &summary, figures);
-    // The key figure of an earlier scenario is removed, so that it is not taken for that of this one.
+    // The key figure of an earlier scenario is removed, so that it is not taken for a figure of this scenario.
     if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
         for kind in ["svg", "png"] {
             let path = folder.path().join(format!("{KEY_FIGURE}.{kind}"));
@@ -144,7 +144,7 @@ fn write_table(folder: &ResultFolder, name: &str, table: Option<Table>) -> Resul
 /// `summary.tex`: the methods over all cells, and each against the reference method on the same trials.
 fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
     let overall = tables::overall_for_paper(summary, stored).to_latex();
-    match summary.pairs.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
+    match summary.comparisons.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
         true => overall,
         false => format!("{overall}\n{}", tables::pairs_for_paper(summary, stored).to_latex()),
     }

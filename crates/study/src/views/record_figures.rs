@@ -3,7 +3,7 @@
 
 use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
-use report::figures::{AxisSpec, Layer, LayerKind, PanelRow, Panels, Pen, Stack, TickRule};
+use report::figures::{AxisSpec, Layer, LayerKind, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::significant;
 use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
@@ -27,7 +27,7 @@ pub struct ModelOverTime {
 /// Opacity of a band.
 const OPACITY: f64 = 0.2;
 
-/// Panel of a rudder.
+/// Row and layers of a rudder panel; `height` is a share of the width of the figure.
 pub fn rudder(name: &str, curve: PlotCurve, height: f64) -> (PanelRow, Vec<Layer>) {
     (PanelRow::zeroed(AxisSpec::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
 }
@@ -39,7 +39,7 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
     // A band wider than everything else is cut at the frame: it would flatten the record.
     let mut bands = Vec::new();
     for ModelOverTime { origin, heading, residual, rms_deg, band } in models {
-        let (pen, colour) = (Pen::from_origin(&origin), origin.look().colour);
+        let (pen, colour) = (Pen::from_origin(&origin), origin.style().colour);
         let rms = rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", significant(rms, 2)));
         upper.push(Layer::line(format!("{}{rms}", origin.label()), heading, pen));
         // Solid, because dashes would hide parts of a noisy residual.
@@ -114,8 +114,8 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     }
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
-    let stack = Stack::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
-    Panels { note, clipping_note, ..Panels::new(Stack { zero: true, ..stack }) }
+    let group = PanelGroup::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
+    Panels { note, clipping_note, ..Panels::new(PanelGroup { zero: true, ..group }) }
 }
 
 #[cfg(test)]
@@ -131,7 +131,7 @@ mod tests {
         };
         let data = steady_turns(&[unstable_ship], ValidityRange { rudder_rad: 0.2, yaw_rate_rad_s: 0.03 });
         let finite = |name: &str| -> Vec<usize> {
-            let layers = &data.stacks[0].panels[0].layers;
+            let layers = &data.groups[0].panels[0].layers;
             let layer = layers.iter().find(|layer| layer.name.as_deref() == Some(name)).expect("it is drawn");
             (0..9).filter(|&row| layer.curve.x[row].is_finite()).collect()
         };

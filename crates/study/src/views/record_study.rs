@@ -16,7 +16,7 @@ use document::names;
 use report::figures::{AxisSpec, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, TickRule};
 use report::markdown::text;
 use report::number::{self, MISSING, significant};
-use report::palette::Look;
+use report::palette::CurveStyle;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
 use super::key_rows::tint;
@@ -25,7 +25,7 @@ use super::study_figures::{self, FigurePlace, StudyFigure};
 use super::{coverage_table, tables};
 use crate::options::FigureChoice;
 
-/// Name of the table of all rows, for people.
+/// Name of the table of all fits.
 const RECORDS: &str = "records.csv";
 
 /// Name of the table of the parameters of named effects.
@@ -81,7 +81,7 @@ pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
     table
 }
 
-/// Table of every trial, with K and T of every fit.
+/// Table of every fit and the record that validates it: K, T, heading errors, verdict, named effects and failure.
 fn trials(rows: &[StudyRow], design: &Design) -> Table {
     let head = tables::head(design).texts(["fitted", "judge"]);
     let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
@@ -117,7 +117,7 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
             continue;
         }
         for effect in named {
-            for size in &effect.sizes {
+            for size in &effect.parameters {
                 let mut cells = tables::row_labels(design, row.cell as usize, row.method);
                 cells.extend([record.fitted.clone(), effect.id.to_string(), size.symbol.to_string()]);
                 cells
@@ -133,21 +133,21 @@ fn effects(rows: &[StudyRow], design: &Design) -> Table {
 fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFigure {
     let marks = |line: &RecordSummary| {
         let method = &design.methods[line.method];
-        let look = CurveOrigin::Method(method.id.clone()).look();
-        let pale = Look { colour: tint(look.colour), ..look };
+        let style = CurveOrigin::Method(method.id.clone()).style();
+        let pale = CurveStyle { colour: tint(style.colour), ..style };
         let trials = rows.iter().filter(|row| (row.cell as usize, row.method) == (line.cell, line.method));
         let mut items: Vec<RowItem> = trials
             .filter_map(|row| row.validation_rmse_deg)
             .map(|error| RowItem {
-                place: RowPlace::Beside,
+                place: RowPlace::SameLine,
                 ..RowItem::new("", RowKind::Mark(pale, error, None)).clipped_if_far()
             })
             .collect();
         let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED_VALUES);
         items.extend(median.map(|median| RowItem {
-            number: Some(degrees(median.value)),
-            place: RowPlace::Beside,
-            ..RowItem::new(&method.label, RowKind::Mark(look, median.value, median.ci95))
+            number: Some(degrees_text(median.value)),
+            place: RowPlace::SameLine,
+            ..RowItem::new(&method.label, RowKind::Mark(style, median.value, median.ci95))
         }));
         items.iter_mut().take(1).for_each(|item| item.place = RowPlace::Below);
         items
@@ -179,7 +179,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
 }
 
 /// Angle, deg, with two significant digits and the sign of a degree.
-pub fn degrees(value: f64) -> String {
+pub fn degrees_text(value: f64) -> String {
     format!("{}°", significant(value, 2))
 }
 
@@ -215,7 +215,7 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
     let errors = ratios.iter().map(|(cell, _)| {
         let labels = design.cells[*cell].labels.join(", ");
         let place = if labels.is_empty() { String::new() } else { format!(" ({labels})") };
-        format!("{} → {}{place}", degrees(median(*cell, 0)), degrees(median(*cell, best)))
+        format!("{} → {}{place}", degrees_text(median(*cell, 0)), degrees_text(median(*cell, best)))
     });
     format!("On records not fitted {first} → {method}: {}", errors.collect::<Vec<_>>().join(", "))
 }

@@ -9,7 +9,7 @@ use trial::Quantity;
 use super::method_table::estimate;
 use crate::scales::scale_name;
 
-/// Sentence on the terms of a model that scale.
+/// Sentence on the terms of a model: which do not scale, which scale, and which are undecided.
 pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
     let symbols_of = |verdict: Scaling| -> Vec<&str> {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
@@ -29,7 +29,7 @@ pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
     parts.join("; ")
 }
 
-/// Table of one model.
+/// Table of the terms of a model: joint estimate, estimate at each scale, difference and verdict.
 pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     let groups = scales.groups.iter();
     let groups = groups.map(|group| scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }));
@@ -69,7 +69,7 @@ pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::work::every_scale::compared_term;
+    use crate::work::scale_comparison::compared_term;
 
     #[test]
     fn every_term_has_its_word_and_the_sentence_begins_with_what_does_not_scale() {

@@ -2,8 +2,8 @@
 //! explains, residual after it.
 
 use document::names;
-use document::trace::{StairEntry, TraceDocument};
-use report::figures::{AxisSpec, Layer, LayeredPanel, PanelRow, Panels, Pen, Stack, TickRule};
+use document::trace::{InclusionStepEntry, TraceDocument};
+use report::figures::{AxisSpec, Layer, LayeredPanel, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::significant;
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
@@ -12,8 +12,8 @@ use crate::documents::curves::TraceCurves;
 
 /// Heading errors along the steps: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
 fn sentence(document: &TraceDocument) -> String {
-    let size = |step: &StairEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
-    let step_words = |step: &StairEntry| match &step.id {
+    let size = |step: &InclusionStepEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
+    let step_words = |step: &InclusionStepEntry| match &step.id {
         None => size(step),
         Some(id) => format!("{} ({}{})", size(step), names::effect(id), unnamed_remark(document, id)),
     };
@@ -30,7 +30,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         layers: vec![Layer::line(
             "",
             PlotCurve::new(time.as_slice(), values),
-            Pen::new(origin.look().colour).width(0.9),
+            Pen::new(origin.style().colour).width(0.9),
         )],
         ..LayeredPanel::default()
     };
@@ -47,8 +47,8 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         panels.push(panel(format!("error {}°", size(number + 1)), pair[1].clone(), &CurveOrigin::After));
     }
     let row = PanelRow::zeroed(AxisSpec::new("heading [°]", TickRule::Angle), 0.085);
-    let stack = Stack { is_unbroken: true, ..Stack::multiples(3, AxisSpec::time(), row, panels) };
-    let plot = Panels::new(stack);
+    let group = PanelGroup { is_unbroken: true, ..PanelGroup::multiples(3, AxisSpec::time(), row, panels) };
+    let plot = Panels::new(group);
     let caption = format!(
         "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \
          the closest replay; degrees are root mean squares over all fitted records.",

@@ -23,7 +23,7 @@ const MARK: &str = "<!-- Made by `study report` of several studies, which writes
 /// Maximum size of an existing page that is read, bytes.
 const MAX_PAGE_BYTES: u64 = 1 << 26;
 
-/// Section of a study.
+/// Section of the page on a study.
 struct Section {
     /// Name of the folder.
     name: String,

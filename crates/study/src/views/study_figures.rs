@@ -66,7 +66,7 @@ pub fn chosen_figures(
     let warn = |key: &str, name: &str| {
         let there =
             if stems.is_empty() { String::from("there is none") } else { format!("there are: {}", stems.join(", ")) };
-        screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; {there}"));
+        screen::print_to_stderr(&format!("warning: `output.{key}`: there is no figure {name:?}; {there}"));
     };
     let key = output.figure.as_ref().and_then(|stem| {
         let figure = figures.iter().find(|(_, figure)| figure.stem == *stem);
@@ -85,13 +85,13 @@ pub fn chosen_figures(
                     key_figure::add_trials_remark(&mut key, &key_figure::trials_remark(design));
                 }
                 _ if design.is_measured() => {}
-                _ => key_figure::add_trials_remark(&mut key, key_figure::SIMULATED),
+                _ => key_figure::add_trials_remark(&mut key, key_figure::SIMULATED_REMARK),
             }
             (FigurePlace::Key, key)
         })
     });
     for (_, figure) in figures.iter_mut().filter(|_| !design.is_measured()) {
-        key_figure::add_trials_remark(figure, key_figure::SIMULATED);
+        key_figure::add_trials_remark(figure, key_figure::SIMULATED_REMARK);
     }
     let named = output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
     for name in named.into_iter().flatten().filter(|name| !stems.contains(name)) {
@@ -99,7 +99,7 @@ pub fn chosen_figures(
     }
     figures.retain(|(_, figure)| match choice {
         FigureChoice::All => true,
-        FigureChoice::Hero | FigureChoice::None => false,
+        FigureChoice::Key | FigureChoice::None => false,
         FigureChoice::Named => named.is_none_or(|named| named.contains(&figure.stem)),
     });
     key.into_iter().chain(figures).collect()
@@ -183,7 +183,7 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
     let reliability = traces::reliability(&lines).map(|data| {
         let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
                        effect on the list counts once in every trial of a ship whose effects are known.";
-        PageFigure::new("reliability", traces::kept_effects_finding(&lines), format!("{caption}{whose}"), data)
+        PageFigure::new("reliability", traces::present_effects_finding(&lines), format!("{caption}{whose}"), data)
     });
     let rules = traces::rules(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \

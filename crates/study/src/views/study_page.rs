@@ -123,7 +123,7 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         overall: (design.cells.len() > 1).then(|| tables::overall(summary, design)),
         brief,
         cells: design.cells.len(),
-        relative: tables::relative_to(design),
+        relative: tables::error_reference(design),
         times: design.methods.iter().enumerate().filter_map(time).collect(),
         failures: tables::failures(summary, design),
         figures,

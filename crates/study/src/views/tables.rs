@@ -12,7 +12,8 @@ use campaign::store::StoredStudy;
 use campaign::summary::{IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
 use document::method::MethodEntry;
 
-/// Table of a showcase: the methods, and below them the true and the published values.
+/// Table of the first trial of a cell (a showcase): estimates of the methods, and below them the true and the published
+/// values.
 pub fn showcase(showcase: &Showcase) -> Table {
     let entries: Vec<MethodEntry> = showcase.methods.iter().map(|shown| shown.entry.clone()).collect();
     let mut table = super::method_table::table(&entries, &[]);
@@ -38,17 +39,22 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     }
     let mut table = Table::new(head.numbers(["evaluations"]));
     for line in lines {
-        let record = &line.record;
+        let performance = &line.performance;
         let mut cells = row_labels(design, line.cell, line.method);
-        cells.extend([record.trials.to_string(), record.failed().to_string()]);
-        for errors in [&record.k, &record.t, &record.k_over_t] {
+        cells.extend([performance.trials.to_string(), performance.failed().to_string()]);
+        for errors in [&performance.k, &performance.t, &performance.k_over_t] {
             cells.extend(ERRORS.iter().flat_map(|(.., get)| all_digits(get(errors))));
         }
-        let percent = record.failure_rate.map(|rate| rate.times(100.0));
-        for figure in [percent, record.heading_rmse_deg, record.validation_rmse_deg, record.high_validation_rmse_deg] {
+        let percent = performance.failure_rate.map(|rate| rate.times(100.0));
+        for figure in [
+            percent,
+            performance.heading_rmse_deg,
+            performance.validation_rmse_deg,
+            performance.validation_rmse_p90_deg,
+        ] {
             cells.extend(all_digits(figure));
         }
-        cells.push(number::optional(record.evaluations, 1));
+        cells.push(number::optional(performance.evaluations, 1));
         table.push(cells);
     }
     table
@@ -68,11 +74,11 @@ const ERRORS: [ErrorFigure; 15] = [
     ("25 % quantile", "%", |errors| errors.quantiles[1]),
     ("75 % quantile", "%", |errors| errors.quantiles[2]),
     ("97.5 % quantile", "%", |errors| errors.quantiles[3]),
-    ("median of sizes", "%", |errors| errors.median_size),
-    ("90 % of sizes", "%", |errors| errors.high_size),
+    ("median of sizes", "%", |errors| errors.median_absolute_error),
+    ("90 % of sizes", "%", |errors| errors.absolute_error_p90),
     ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
-    ("width of intervals", "%", |errors| errors.width),
-    ("quoting intervals", "%", |errors| errors.quoting.map(|share| share.times(100.0))),
+    ("width of intervals", "%", |errors| errors.median_interval_width),
+    ("quoting intervals", "%", |errors| errors.interval_share.map(|share| share.times(100.0))),
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
@@ -106,8 +112,8 @@ fn all_digits(figure: Option<Statistic>) -> [String; 3] {
 /// Statistics of methods in the width of a screen or a page: failures, median and rms errors with interval, coverage,
 /// spread over the bound, and the validation error if there is one.
 pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
-    let records = || summary.methods.iter().map(|line| &line.record);
-    let validated = records().any(|record| record.validation_rmse_deg.is_some());
+    let performances = || summary.methods.iter().map(|line| &line.performance);
+    let validated = performances().any(|performance| performance.validation_rmse_deg.is_some());
     let mut head = head(design).counts(["failed"]);
     for index in ["K", "T"] {
         head = head.numbers(["median", "rms"].map(|figure| format!("{index} {figure}"))).unit("%").interval();
@@ -116,16 +122,16 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let mut table = Table::new(head.numbers(validated.then_some("validation")).unit("deg"));
     for line in &summary.methods {
         let mut cells = row_labels(design, line.cell, line.method);
-        cells.extend(brief(&line.record));
-        cells.extend(validated.then(|| supported(line.record.validation_rmse_deg)));
+        cells.extend(brief(&line.performance));
+        cells.extend(validated.then(|| supported(line.performance.validation_rmse_deg)));
         table.push(cells);
     }
     with_reference(table, design)
 }
 
-fn brief(record: &Performance) -> Vec<String> {
-    let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
-    for errors in [&record.k, &record.t] {
+fn brief(performance: &Performance) -> Vec<String> {
+    let mut cells = vec![format!("{}/{}", performance.failed(), performance.trials)];
+    for errors in [&performance.k, &performance.t] {
         cells.push(supported(errors.median));
         cells.push(supported(errors.rms));
         cells.push(interval(errors.rms));
@@ -136,7 +142,7 @@ fn brief(record: &Performance) -> Vec<String> {
 }
 
 /// Reference of the errors of K and T as text. A trace is compared with the ship's own K and T.
-pub fn relative_to(design: &Design) -> &'static str {
+pub fn error_reference(design: &Design) -> &'static str {
     let is_nearest = |cell: &CellFacts| cell.is_compared_with_nearest;
     match () {
         () if design.methods.iter().all(|method| method.id == TRACE) => TRUTH,
@@ -153,7 +159,7 @@ const TRUTH: &str = "the truth";
 
 /// Table of errors, titled with their reference unless that is the truth alone.
 fn with_reference(table: Table, design: &Design) -> Table {
-    match relative_to(design) {
+    match error_reference(design) {
         TRUTH => table,
         reference => table.titled(format!("Errors of K and T relative to {reference}")),
     }
@@ -167,15 +173,15 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
         head = head.numbers(["90 %"]).unit("%").counts(["coverage"]).unit("%");
     }
     let mut table = Table::new(head.numbers(["validation"]).unit("deg"));
-    for (method, record) in design.methods.iter().zip(&summary.overall) {
-        let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
-        for errors in [&record.k, &record.t] {
-            cells.push(supported(errors.median_size));
-            cells.push(interval(errors.median_size));
-            cells.push(supported(errors.high_size));
+    for (method, performance) in design.methods.iter().zip(&summary.overall) {
+        let mut cells = vec![method.label.clone(), format!("{}/{}", performance.failed(), performance.trials)];
+        for errors in [&performance.k, &performance.t] {
+            cells.push(supported(errors.median_absolute_error));
+            cells.push(interval(errors.median_absolute_error));
+            cells.push(supported(errors.absolute_error_p90));
             cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
         }
-        cells.push(supported(record.validation_rmse_deg));
+        cells.push(supported(performance.validation_rmse_deg));
         table.push(cells);
     }
     with_reference(table, design)
@@ -189,7 +195,7 @@ pub fn overall_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
         "Errors of K and T in {scope}, relative to {}: trials that failed, median of the size of the error with its 95 % \
          bootstrap interval, 90 % quantile of this size, share of the 95 % intervals that contain the truth, and median \
          heading error on an unseen manoeuvre.",
-        relative_to(&stored.design)
+        error_reference(&stored.design)
     );
     overall(summary, &stored.design).titled(caption).labelled(name.as_str())
 }
@@ -203,11 +209,11 @@ pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
         head = head.numbers([format!("{index} closer")]).unit("%").interval();
     }
     let mut table = Table::new(head);
-    for line in &summary.pairs {
+    for line in &summary.comparisons {
         let mut cells = row_labels(design, line.cell, line.method);
         cells.push(line.trials.to_string());
         for comparison in [&line.k, &line.t] {
-            for figure in [comparison.rms_ratio, comparison.closer.map(|share| share.times(100.0))] {
+            for figure in [comparison.rms_ratio, comparison.smaller_error_share.map(|share| share.times(100.0))] {
                 cells.extend([supported(figure), interval(figure)]);
             }
         }
@@ -236,7 +242,7 @@ pub fn pairs(lines: &[ReferenceComparison], reference: &MethodName, design: &Des
         for comparison in [&line.k, &line.t] {
             cells.extend(all_digits(comparison.rms_difference));
             cells.extend(all_digits(comparison.rms_ratio));
-            cells.extend(all_digits(comparison.closer.map(|share| share.times(100.0))));
+            cells.extend(all_digits(comparison.smaller_error_share.map(|share| share.times(100.0))));
         }
         table.push(cells);
     }
@@ -257,14 +263,14 @@ fn interval(figure: Option<Statistic>) -> String {
 
 /// Reasons of failed trials with their counts, one line per cell and method.
 pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
-    let line = |cell: usize, method: usize, record: &Performance| {
+    let line = |cell: usize, method: usize, performance: &Performance| {
         let reasons: Vec<String> =
-            record.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
+            performance.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
         let place = design.cells[cell].labels.join(", ");
         let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
         let method = &design.methods[method].label;
-        format!("{place}{method}: {} of {} failed ({})", record.failed(), record.trials, reasons.join(", "))
+        format!("{place}{method}: {} of {} failed ({})", performance.failed(), performance.trials, reasons.join(", "))
     };
-    let failing = summary.methods.iter().filter(|line| !line.record.failures.is_empty());
-    failing.map(|summary| line(summary.cell, summary.method, &summary.record)).collect()
+    let failing = summary.methods.iter().filter(|line| !line.performance.failures.is_empty());
+    failing.map(|summary| line(summary.cell, summary.method, &summary.performance)).collect()
 }

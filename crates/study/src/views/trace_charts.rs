@@ -5,13 +5,11 @@ use std::collections::BTreeSet;
 
 use campaign::scenario::{HULL, TRACE};
 use report::figures::{
-    AxisSpec, CellMap, Layer, MapCell, NamedRows, Outline, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Shades,
-    Stack, TickRule,
+    AxisSpec, CellMap, Layer, MapCell, NamedRows, Outline, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind,
+    RowsColumn, Shades, TickRule,
 };
 use report::number::significant;
-use report::palette::{
-    BEFORE, DASHED, DIMENSION, DOTTED, Dash, HEADING, INK, Look, Marker, RECORD, RGBColor, RUDDER, SOLID,
-};
+use report::palette::{BEFORE, CurveStyle, DIMENSION, HEADING, INK, Marker, RECORD, RGBColor, RUDDER, SOLID};
 use report::{CurveOrigin, PlotCurve};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
@@ -72,7 +70,7 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
         MapCell {
             value: Some(named.map_or(0.0, |share| share.value)),
             interval: named.and_then(|share| share.ci95),
-            outline: if is_right { Some(Outline::Right) } else { is_alias.then_some(Outline::Alias) },
+            outline: if is_right { Some(Outline::Correct) } else { is_alias.then_some(Outline::Alias) },
             trials,
         }
     };
@@ -117,14 +115,14 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     Some(trade_off(&rules.iter().map(of_rule).collect::<Option<Vec<_>>>()?, counts))
 }
 
-/// Share of false names of several traces on ships without a missing effect, with the bound for this number of trials;
-/// `None` for one trace, or if a ship lacks an effect.
+/// Share of false names of several traces on ships without a missing effect, with 95 % Wilson intervals, whose upper
+/// end bounds the rate of false names; `None` for one trace, or if a ship lacks an effect.
 pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let rules = grouped(lines, |line| line.method);
     if rules.len() < 2 || lines.iter().any(|line| !line.missing.is_empty()) {
         return None;
     }
-    let look = CurveOrigin::Method(TRACE.to_owned()).look();
+    let style = CurveOrigin::Method(TRACE.to_owned()).style();
     let counted = |(method, lines): &(usize, Vec<&TraceSummary>)| {
         let counts = [|line: &&TraceSummary| line.falsely_named, |line: &&TraceSummary| line.trials];
         (design.methods[*method].label.as_str(), counts.map(|count| lines.iter().map(count).sum::<u64>()))
@@ -148,7 +146,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     let row = |(_, [wrong, trials]): &(&str, [u64; 2])| {
         let share = wilson_share(*wrong, *trials)?.times(100.0);
         let number = share.ci95.map(|[_, upper]| format!("{wrong} of {trials}: up to {upper:.0} %"));
-        Some(vec![RowItem { number, ..RowItem::new("", RowKind::Mark(look, share.value, share.ci95)) }])
+        Some(vec![RowItem { number, ..RowItem::new("", RowKind::Mark(style, share.value, share.ci95)) }])
     };
     let column = RowsColumn {
         x: AxisSpec::decimal("trials with a false name [%]"),
@@ -176,10 +174,10 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)], [all, lacking]: [u64; 2]) -
     let column = |title: String, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
         let item = |(rule, (kind, _)): (&(&str, Statistic, Statistic), &(&str, &str))| {
             let number = kinds.iter().position(|other| other == kind).unwrap_or(0) % COLOURS.len();
-            let look = Look { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
+            let style = CurveStyle { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
             let share = share(rule);
             let number = Some(format!("{} %", significant(share.value, 2)));
-            RowItem { number, ..RowItem::mark_below(*kind, look, share.value, share.ci95) }
+            RowItem { number, ..RowItem::mark_below(*kind, style, share.value, share.ci95) }
         };
         let row = |variant: &&str| rules.iter().zip(&parts).filter(|(_, (_, of))| of == variant).map(item).collect();
         RowsColumn { x: AxisSpec::decimal(title), rows: variants.iter().map(row).collect(), ..RowsColumn::default() }
@@ -208,33 +206,24 @@ const NAMING_SUPPORT: f64 = 10.283;
 /// Number of rows of a typical record; its logarithm is the penalty of every parameter in 2 ln Λ, as in BIC.
 const TYPICAL_ROWS: f64 = 300.0;
 
-/// Numbers of parameters whose power is plotted.
-const PARAMETERS: [u32; 3] = [1, 2, 3];
+/// Smallest and largest number of parameters whose power is plotted.
+const PARAMETERS: [u32; 2] = [1, 3];
 
 /// Measured share: its abscissa, its value in per cent, and its 95 % interval.
 type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 
-/// Measured shares by name, with theoretical curves.
-fn shares(
-    x: AxisSpec,
-    y_title: &str,
-    series: Vec<(String, Vec<MeasuredShare>)>,
-    theory: Vec<(String, PlotCurve)>,
-) -> Panels {
-    const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
+/// Measured shares by name over the layer of the theory.
+fn shares(x: AxisSpec, y_title: &str, series: Vec<(String, Vec<MeasuredShare>)>, theory: Layer) -> Panels {
     const COLOURS: [RGBColor; MAX_SERIES] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
     const MARKERS: [Marker; MAX_SERIES] =
         [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star];
-    let looks = COLOURS.into_iter().zip(MARKERS);
-    let line = |((name, curve), dash): ((String, PlotCurve), Dash)| {
-        Layer::line(name, curve, Pen { width: 0.9, dash, ..Pen::new(INK) })
-    };
+    let styles = COLOURS.into_iter().zip(MARKERS);
     let marks = |((name, points), (colour, marker)): ((String, Vec<MeasuredShare>), (RGBColor, Marker))| {
-        Layer::marks(name, Look { colour, marker, dash: SOLID, hollow: false }, points)
+        Layer::marks(name, CurveStyle { colour, marker, dash: SOLID, hollow: false }, points)
     };
-    let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(looks).map(marks)).collect();
+    let layers = std::iter::once(theory).chain(series.into_iter().zip(styles).map(marks)).collect();
     let row = PanelRow::new(AxisSpec::new(y_title, TickRule::Percent), 0.42);
-    Panels::new(Stack::over(x, vec![(row, layers)]))
+    Panels::new(PanelGroup::over(x, vec![(row, layers)]))
 }
 
 /// Maximum number of named kinds of trial, and of series in a figure.
@@ -243,19 +232,21 @@ const MAX_SERIES: usize = 6;
 /// Number of ranges per decade of the expected 2 ln Λ if there are many kinds of trial.
 const RANGES_PER_DECADE: f64 = 3.0;
 
-/// Figure of the detection power against the expected 2 ln Λ of the truth over the nearest first-order response, for
+/// Chart of the detection power against the expected 2 ln Λ of the truth over the nearest first-order response, for
 /// response models with one missing effect. A few cells are shown under the name of the effect; more are pooled over
 /// ranges of 2 ln Λ. `None` without such a cell, or if the effect is named in every trial.
 pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
-        line.missing.len() == 1 && !line.is_hull() && line.expected.is_some_and(|expected| expected > MIN_RATIO)
+        line.missing.len() == 1
+            && !line.is_hull()
+            && line.mean_expected_2_ln_lambda.is_some_and(|expected| expected > MIN_RATIO)
     };
     let shown: Vec<&TraceSummary> = lines.iter().filter(is_shown).collect();
     if shown.iter().all(|line| line.all_named == line.trials) {
         return None;
     }
     let are_few = shown.len() <= MAX_SERIES;
-    let expected = |line: &TraceSummary| line.expected.unwrap_or(MIN_RATIO);
+    let expected = |line: &TraceSummary| line.mean_expected_2_ln_lambda.unwrap_or(MIN_RATIO);
     let name = |line: &&TraceSummary| match (are_few, is_time_dependent(&line.missing[0])) {
         (true, _) => names::effect(&line.missing[0]),
         (_, false) => String::from("an effect of the ship or its gear"),
@@ -281,16 +272,18 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
     let series = grouped(marks, |((name, _), _)| name.clone()).into_iter();
     let series = series.map(|(name, marks)| (name, marks.iter().filter_map(|(_, lines)| point(lines)).collect()));
     let largest = shown.iter().map(|line| expected(line)).reduce(f64::max)?;
-    let theory = PARAMETERS.map(|freedom| {
+    let power = |freedom: u32| {
         let limit = NAMING_SUPPORT + f64::from(freedom) * TYPICAL_ROWS.ln();
         let sizes: Vec<f64> =
             (0..POINTS).map(|k| MIN_RATIO * (largest / MIN_RATIO).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let power: Vec<f64> = sizes.iter().map(|&size| 100.0 * exceeds(freedom, size, limit)).collect();
-        let plural = if freedom == 1 { "" } else { "s" };
-        (format!("ideal test, {freedom} parameter{plural}"), PlotCurve::new(sizes, power))
-    });
+        PlotCurve::new(sizes, power)
+    };
+    let [fewest, most] = PARAMETERS;
+    let theory = format!("ideal test, {fewest} to {most} parameters");
+    let theory = Layer::band(theory, [power(most), power(fewest)], INK, 0.2);
     let x = AxisSpec::new("size of the effect: expected 2 ln Λ", TickRule::Logarithmic);
-    let data = shares(x, "trials in which it is named [%]", series.collect(), theory.into());
+    let data = shares(x, "trials in which it is named [%]", series.collect(), theory);
     Some(Panels { note: Some(note), ..data })
 }
 
@@ -301,7 +294,7 @@ pub fn single_effect_counts(lines: &[TraceSummary]) -> [u64; 2] {
 }
 
 /// Finding: how many of the effects with the highest probabilities were present.
-pub fn kept_effects_finding(lines: &[TraceSummary]) -> String {
+pub fn present_effects_finding(lines: &[TraceSummary]) -> String {
     let ranges = calibration_bins(lines);
     let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {
         return String::from("No effect has a probability");
@@ -330,7 +323,7 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
     let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = AxisSpec::new("mean probability given [%]", TickRule::Percent);
-    let theory = vec![(String::from("calibrated"), diagonal)];
+    let theory = Layer::line("calibrated", diagonal, Pen::new(INK).width(0.9));
     ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
@@ -401,10 +394,16 @@ mod tests {
     fn power_is_drawn_where_something_is_missed() {
         let line = |cell: usize, all_named| TraceSummary {
             missing: vec![String::from(if cell == 0 { "wave_yaw" } else { "steering_lag" })],
-            ..TraceSummary { cell, trials: 4, all_named, expected: Some(20.0), ..TraceSummary::default() }
+            ..TraceSummary {
+                cell,
+                trials: 4,
+                all_named,
+                mean_expected_2_ln_lambda: Some(20.0),
+                ..TraceSummary::default()
+            }
         };
         let marks = |lines: Vec<TraceSummary>| -> Option<Vec<(String, Vec<f64>)>> {
-            let layers = detection_power(&lines)?.stacks.remove(0).panels.remove(0).layers.split_off(PARAMETERS.len());
+            let layers = detection_power(&lines)?.groups.remove(0).panels.remove(0).layers.split_off(1);
             Some(layers.into_iter().map(|layer| (layer.name.unwrap_or_default(), layer.curve.y)).collect())
         };
         let named = |name: &str, y: &[f64]| (name.to_owned(), y.to_vec());

@@ -4,16 +4,17 @@
 use campaign::curves::{angle_curve_deg, degrees};
 use document::names;
 use document::trace::{
-    BeforeAfter, Document, EffectEntry, ErrorsEntry, MissingMomentEntry, Outcome, RecordEntry, TraceDocument,
+    Document, EffectEntry, MissingMomentEntry, ModelReplayErrors, Outcome, RecordEntry, RecordReplayErrors,
+    TraceDocument,
 };
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 use identify::replay::Replay;
 use report::figures::{
-    AxisLine, AxisSpec, Layer, LayerKind, NamedRows, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn, Stack,
+    AxisLine, AxisSpec, Layer, LayerKind, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind, RowsColumn,
     TickRule,
 };
 use report::number::{MISSING, fixed, significant};
-use report::palette::{HEADING, Look, Marker, RGBColor, RUDDER, SOLID};
+use report::palette::{CurveStyle, HEADING, Marker, RGBColor, RUDDER, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag};
@@ -24,20 +25,21 @@ use super::{innovation_figure, missing_moment};
 use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
 use crate::documents::missing_moment::MissingMomentCurves;
 
-/// Maximum ratio of the frequencies of spectral lines that are averaged into one.
+/// Maximum ratio of the frequencies of neighbouring spectral lines that are averaged.
 const LINE: f64 = 1.06;
 
 /// Figures of every fitted record with the models before and after.
 pub fn record_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let fitted = document.records.iter().zip(&curves.records).enumerate().filter(|(_, (entry, _))| !entry.held_out);
-    let figure = |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &BeforeAfter)| {
-        let name = names::record(&entry.name);
-        let share = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
-        let finding = format!("{name}: heading error of the whole replay × {share}");
-        let caption = format!("{name}: heading, residual and rudder, with the 95 % band of the model after.");
-        PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, record_fit(record, errors))
-    };
+    let figure =
+        |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &RecordReplayErrors)| {
+            let name = names::record(&entry.name);
+            let share = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
+            let finding = format!("{name}: heading error of the whole replay × {share}");
+            let caption = format!("{name}: heading, residual and rudder, with the 95 % band of the model after.");
+            PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, record_fit(record, errors))
+        };
     fitted.zip(&document.trace.error.identification).map(figure).collect()
 }
 
@@ -120,7 +122,7 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
 }
 
 /// Heading and rudder of a record over time, with the replays before and after.
-fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
+fn record_fit(record: &TracedRecord, errors: &RecordReplayErrors) -> Panels {
     let trial = &record.trial;
     let rms = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
     let (heading, rudder) =
@@ -129,29 +131,29 @@ fn record_fit(record: &TracedRecord, errors: &BeforeAfter) -> Panels {
 }
 
 /// Root mean square heading errors over some records, deg: of the base, and of the structure average.
-pub fn rms<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> [f64; 2] {
+pub fn heading_rms_deg<'a>(all: impl Iterator<Item = &'a RecordReplayErrors> + Clone) -> [f64; 2] {
     let count = all.clone().count() as f64;
-    let models: [fn(&BeforeAfter) -> &ErrorsEntry; 2] = [|errors| &errors.before, |errors| &errors.after];
+    let models: [fn(&RecordReplayErrors) -> &ModelReplayErrors; 2] = [|errors| &errors.before, |errors| &errors.after];
     models.map(|model| (all.clone().map(|errors| model(errors).heading_rmse_deg.powi(2)).sum::<f64>() / count).sqrt())
 }
 
 /// Ratio of the root mean square heading errors over some records: structure average to base.
-pub fn ratio<'a>(all: impl Iterator<Item = &'a BeforeAfter> + Clone) -> f64 {
-    let [before, after] = rms(all);
+pub fn heading_error_ratio<'a>(all: impl Iterator<Item = &'a RecordReplayErrors> + Clone) -> f64 {
+    let [before, after] = heading_rms_deg(all);
     after / before
 }
 
 /// Maximum length of a bar of ΔBIC, in medians of all bars.
 const MAX_BAR_MEDIANS: f64 = 30.0;
 
-fn outcome_look(outcome: Outcome) -> (&'static str, Look) {
+fn outcome_style(outcome: Outcome) -> (&'static str, CurveStyle) {
     let (name, colour) = match outcome {
         Outcome::Added => ("named", HEADING),
         Outcome::Alias => ("indistinguishable from a named one", RUDDER),
         Outcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
         Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
-    (name, Look { colour, marker: Marker::Square, dash: SOLID, hollow: outcome == Outcome::NotObservable })
+    (name, CurveStyle { colour, marker: Marker::Square, dash: SOLID, hollow: outcome == Outcome::NotObservable })
 }
 
 /// Names of the effects with their probabilities.
@@ -190,8 +192,8 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     silent.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
     let rows: Vec<_> = named.chain(silent).collect();
     let bar = |value: f64, text: String, outcome: Outcome| {
-        let (name, look) = outcome_look(outcome);
-        vec![RowItem { number: Some(text), ..RowItem::new(name, RowKind::Bar(look, value)) }]
+        let (name, style) = outcome_style(outcome);
+        vec![RowItem { number: Some(text), ..RowItem::new(name, RowKind::Bar(style, value)) }]
     };
     let column = |x: AxisSpec, rows| RowsColumn { x, rows, zero: true, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, (value, text), _, outcome)| bar(*value, text.clone(), *outcome));
@@ -214,42 +216,42 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
 fn residual(record: &TracedRecord) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
-    let stack = |x: AxisSpec, y: AxisSpec, joined: bool, curve_of: &dyn Fn(&Replay) -> PlotCurve| {
+    let group = |x: AxisSpec, y: AxisSpec, joined: bool, curve_of: &dyn Fn(&Replay) -> PlotCurve| {
         let layer = |(origin, replay): (CurveOrigin, &Replay)| {
-            let colour = origin.look().colour;
+            let colour = origin.style().colour;
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
             Layer::new(origin.label(), curve_of(replay), if joined { line } else { LayerKind::Dots(colour) })
         };
         let row = PanelRow { zero: y.tick_rule != TickRule::Logarithmic, ..PanelRow::new(y, 0.17) };
-        Stack { is_half: true, ..Stack::over(x, vec![(row, replays_by_origin(record).map(layer).into())]) }
+        PanelGroup { is_half: true, ..PanelGroup::over(x, vec![(row, replays_by_origin(record).map(layer).into())]) }
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
         let scatter = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
-        stack(AxisSpec::decimal(x_title), AxisSpec::decimal("residual [°]"), false, &scatter)
+        group(AxisSpec::decimal(x_title), AxisSpec::decimal("residual [°]"), false, &scatter)
     };
     let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::from_trial(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
     let frequency = AxisSpec::new("frequency [Hz]", TickRule::Logarithmic);
     let density = AxisSpec::new("power [°²/Hz]", TickRule::Logarithmic);
-    let spectrum = stack(frequency, density, true, &|replay| power_spectrum(&series(replay)));
+    let spectrum = group(frequency, density, true, &|replay| power_spectrum(&series(replay)));
     let mark = period.map(|period| AxisLine { value: period.recip(), label: String::from("period") });
-    let stacks = vec![
+    let groups = vec![
         against("heading [°]", &|replay| degrees(&replay.heading)),
         against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),
         against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
-        Stack { marks: mark.into_iter().collect(), ..spectrum },
+        PanelGroup { vertical_lines: mark.into_iter().collect(), ..spectrum },
     ];
-    Panels { stacks, ..Panels::default() }
+    Panels { groups, ..Panels::default() }
 }
 
-/// Points of a cloud, thinned to what a figure can show.
+/// Points of a cloud, thinned to at most 1500.
 fn thinned(x: Vec<f64>, y: Vec<f64>) -> PlotCurve {
     let step = x.len().div_ceil(1500).max(1);
     let every = |values: Vec<f64>| values.into_iter().step_by(step).collect::<Vec<f64>>();
     PlotCurve::new(every(x), every(y))
 }
 
-/// Power spectral density of a residual in degrees, neighbouring lines averaged.
+/// Power spectral density of a residual in degrees: °²/Hz over Hz, neighbouring lines averaged.
 fn power_spectrum(residual: &GappedSeries) -> PlotCurve {
     let count = residual.values.len().max(1) as f64;
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;

@@ -3,14 +3,14 @@
 
 use campaign::curves::angle_curve_deg;
 use document::names;
-use document::trace::{BeforeAfter, RecordEntry, TraceDocument};
-use report::figures::{AxisSpec, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Stack, TickRule};
+use document::trace::{RecordEntry, RecordReplayErrors, TraceDocument};
+use report::figures::{AxisSpec, Layer, LayerKind, LayeredPanel, PanelGroup, PanelRow, Panels, TickRule};
 use report::number::{counted, significant};
 use report::palette::SOLID;
 use report::{CurveOrigin, PageFigure};
 
 use super::record_figures::heading_and_residual;
-use super::trace_figures::{models_over_time, ratio, rms};
+use super::trace_figures::{heading_error_ratio, heading_rms_deg, models_over_time};
 use crate::documents::curves::{TraceCurves, TracedRecord};
 
 /// Maximum number of names in a title.
@@ -34,21 +34,23 @@ fn finding(document: &TraceDocument) -> String {
     let [fitted, held] = [&error.identification, &error.validation];
     format!(
         "{with} the heading error is {:.0} % of a first-order response’s, {:.0} % on {}",
-        100.0 * ratio(fitted.iter()),
-        100.0 * ratio(held.iter()),
+        100.0 * heading_error_ratio(fitted.iter()),
+        100.0 * heading_error_ratio(held.iter()),
         counted(held.len() as u64, "held-out record"),
     )
 }
 
 /// Index of the held-out record whose error ratio is nearest to the pooled one of the title; `None` without such a
 /// record.
-fn nearest(held: &[BeforeAfter]) -> Option<usize> {
-    let off = |number: &usize| (ratio(held[*number..=*number].iter()) / ratio(held.iter())).ln().abs();
+fn nearest(held: &[RecordReplayErrors]) -> Option<usize> {
+    let off = |number: &usize| {
+        (heading_error_ratio(held[*number..=*number].iter()) / heading_error_ratio(held.iter())).ln().abs()
+    };
     (0..held.len()).min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 /// Heading and residual of a record, headed by its role and name.
-fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role: &str) -> Stack {
+fn column(record: &TracedRecord, errors: &RecordReplayErrors, letters: [char; 2], role: &str) -> PanelGroup {
     let name = record.trial.title();
     let trial = &record.trial;
     let [mut upper, lower] =
@@ -67,7 +69,7 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
         }
     }
     let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
-    let share = 100.0 * ratio([errors].into_iter());
+    let share = 100.0 * heading_error_ratio([errors].into_iter());
     let heads = [
         format!("({}) {name}, {role}", letters[0]),
         format!("({}) rms {before}° → {after}°, {share:.0} %", letters[1]),
@@ -84,34 +86,34 @@ fn column(record: &TracedRecord, errors: &BeforeAfter, letters: [char; 2], role:
             ..LayeredPanel::default()
         })
         .collect();
-    Stack { is_half: true, x: vec![AxisSpec::time()], rows: rows.collect(), panels, ..Stack::default() }
+    PanelGroup { is_half: true, x: vec![AxisSpec::time()], rows: rows.collect(), panels, ..PanelGroup::default() }
 }
 
 /// Heading errors before and after of all held-out records with their names, the worst first, headed by their root mean
 /// squares.
-fn all_held(document: &TraceDocument) -> Stack {
+fn all_held(document: &TraceDocument) -> PanelGroup {
     let held = &document.trace.error.validation;
     let held_out = document.records.iter().filter(|record| record.held_out);
-    let mut order: Vec<(&RecordEntry, &BeforeAfter)> = held_out.zip(held).collect();
+    let mut order: Vec<(&RecordEntry, &RecordReplayErrors)> = held_out.zip(held).collect();
     order.sort_by(|(_, a), (_, b)| b.before.heading_rmse_deg.total_cmp(&a.before.heading_rmse_deg));
-    let layer = |origin: CurveOrigin, error: fn(&BeforeAfter) -> f64| {
+    let layer = |origin: CurveOrigin, error: fn(&RecordReplayErrors) -> f64| {
         let points = order.iter().zip(0..).map(|((_, errors), place)| (f64::from(place), error(errors), None));
-        Layer::marks("", origin.look(), points.collect())
+        Layer::marks("", origin.style(), points.collect())
     };
     let layers = vec![
         layer(CurveOrigin::Before, |errors| errors.before.heading_rmse_deg),
         layer(CurveOrigin::After, |errors| errors.after.heading_rmse_deg),
     ];
-    let [before, after] = rms(held.iter()).map(|error| significant(error, 3));
+    let [before, after] = heading_rms_deg(held.iter()).map(|error| significant(error, 3));
     let head = format!(
         "(e) all {} held-out records: rms {before}° → {after}°, {:.0} %",
         held.len(),
-        100.0 * ratio(held.iter())
+        100.0 * heading_error_ratio(held.iter())
     );
     let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
     let panel = LayeredPanel { head: Some(head), layers, ..LayeredPanel::default() };
     let names = order.iter().map(|(record, _)| names::record(&record.name)).collect();
-    Stack { x: vec![AxisSpec::of_names(names)], rows: vec![row], panels: vec![panel], ..Stack::default() }
+    PanelGroup { x: vec![AxisSpec::of_names(names)], rows: vec![row], panels: vec![panel], ..PanelGroup::default() }
 }
 
 /// Key figure of a trace; `None` if no record was held out.
@@ -125,14 +127,14 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         1 => String::from("held out"),
         count => format!("held out, ratio nearest to that of all {count}"),
     };
-    let mut stacks = vec![
+    let mut groups = vec![
         column(fitted, error.identification.first()?, ['a', 'b'], "fitted"),
         column(held, &error.validation[number], ['c', 'd'], &role),
     ];
-    stacks.extend((error.validation.len() > 1).then(|| all_held(document)));
+    groups.extend((error.validation.len() > 1).then(|| all_held(document)));
     let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
                    ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
                    with the effects that were found and the 95 % band. (b), (d): the residuals of both. (e): the heading errors of both on \
                    every held-out record, the worst first.";
-    Some(PageFigure::new("hero", finding(document), caption, Panels { stacks, ..Panels::default() }))
+    Some(PageFigure::new("hero", finding(document), caption, Panels { groups, ..Panels::default() }))
 }

@@ -251,7 +251,7 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let error = &document.trace.error;
     let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
     for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
-        let headings = figures::rms(errors.iter());
+        let headings = figures::heading_rms_deg(errors.iter());
         let overshoots = overshoots::errors_before_after(all, held_out).map(|error| error.median_deg);
         let numbers = headings.map(Some).into_iter().chain(overshoots);
         let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));

@@ -3,7 +3,8 @@
 use ::trace::replay_errors::HORIZONS_S;
 use document::identified_hull::IdentifiedCoefficient;
 use document::trace::{
-    Document, ErrorsEntry, HeadingWander, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry, TraceDocument,
+    Document, HeadingErrorKind, ModelReplayErrors, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry,
+    TraceDocument,
 };
 use document::{MomentKind, names};
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
@@ -108,7 +109,7 @@ pub fn errors(records: &[RecordErrors]) -> Table {
 }
 
 /// Heading error of replays restarted after every `window_s` seconds, deg; `None` if the record is too short.
-pub fn restarted_heading_error(errors: &ErrorsEntry, window_s: f64) -> Option<f64> {
+pub fn restarted_heading_error(errors: &ModelReplayErrors, window_s: f64) -> Option<f64> {
     *errors.horizon_rmse_deg.get(&format!("{window_s:.0}"))?
 }
 
@@ -255,7 +256,7 @@ pub fn coloured_noise_phrases(noise: &RecordNoiseEntry) -> Vec<String> {
         MomentKind::None => None,
     };
     let heading = noise.heading_wander_sd_deg.map(|sd| {
-        let whose = noise.heading_wander.unwrap_or(HeadingWander::Compass);
+        let whose = noise.heading_wander.unwrap_or(HeadingErrorKind::Compass);
         let time = two(noise.heading_correlation_s);
         format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
     });

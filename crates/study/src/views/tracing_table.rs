@@ -55,9 +55,9 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         for error in [|row: &Performance| row.heading_rmse_deg, |row: &Performance| row.validation_rmse_deg] {
             cells.extend(records.map(|record| three(record.and_then(error).map(|figure| figure.value))));
         }
-        cells.push(three(line.expected));
+        cells.push(three(line.mean_expected_2_ln_lambda));
         let digits = if all_digits { 3 } else { 1 };
-        cells.extend(line.band.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
+        cells.extend(line.band_coverage.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
         named.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
         let most = if all_digits { usize::MAX } else { 4 };
@@ -97,7 +97,8 @@ pub fn has_several_traces(design: &Design) -> bool {
     design.methods.iter().filter(|method| method.id == TRACE).count() > 1
 }
 
-/// Table of all cells of one kind together, one row per trace: no missing effect, one effect, several, a hull.
+/// Table of the cells pooled by kind of ship (no missing effect, one effect, several, a hull), one row for every kind
+/// and trace.
 pub fn by_ship_kind(lines: &[TraceSummary], design: &Design) -> Table {
     let several = has_several_traces(design);
     let head = TableHead::default().texts(several.then_some("method")).texts(["cells"]).counts(["number", "trials"]);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use campaign::earlier_trials::earlier_hulls;
 use campaign::failure::Failure;
-use campaign::identified_ship::MethodIndependentResults;
+use campaign::identified_ship::RecordFacts;
 use document::earlier_trials::{EarlierTrials, Likeness, PriorCheckEntry, PriorModelEntry};
 use document::identified_hull::matrix_rows;
 use document::{IdentifiedShip, Warning, WarningCode};
@@ -15,7 +15,7 @@ use report::number::fixed;
 use ship::vessel::prior::HullParticulars;
 use trial::{Trial, file};
 
-use super::stored_ships::{StoredShips, ships_of, text_of};
+use super::stored_ships::{StoredShips, model_text, read_stored_ships};
 use crate::documents::prior;
 use crate::records::file_and_hash;
 
@@ -33,7 +33,7 @@ impl EarlierModel {
     pub fn from_files(paths: &[PathBuf]) -> Result<Vec<Self>, Failure> {
         let read = |path: &PathBuf| {
             let shown = file::display_path(path).display().to_string();
-            Self::from_document(&shown, &text_of(path)?)
+            Self::from_document(&shown, &model_text(path)?)
         };
         paths.iter().map(read).collect()
     }
@@ -42,7 +42,7 @@ impl EarlierModel {
     ///
     /// Fails if the text is no such document, or if it holds no hull.
     pub fn from_document(shown: &str, text: &str) -> Result<Self, Failure> {
-        let StoredShips { ships, records, .. } = ships_of(shown, text)?;
+        let StoredShips { ships, records, .. } = read_stored_ships(shown, text)?;
         let ship = ships.into_values().find(|ship| !ship.hulls.is_empty());
         let ship = ship.ok_or_else(|| {
             let problem = "it holds no hull to use as a prior; fit records that begin on a steady approach, with length and \
@@ -129,7 +129,7 @@ pub struct LaterShip<'a> {
 }
 
 /// Ship updated with earlier trials.
-pub struct ShipAfterTrials {
+pub struct UpdatedShip {
     /// The identified ship.
     pub ship: IdentifiedShip,
     /// Entry of the models used as priors.
@@ -142,7 +142,7 @@ pub struct ShipAfterTrials {
 ///
 /// Fails if she has no hull, if a record would count twice, if the models have no hull of the same form, or if no ship
 /// can be drawn from an updated hull.
-pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfterTrials, Failure> {
+pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<UpdatedShip, Failure> {
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
     let before_trials = earlier_hulls(ship).map_err(|error| Failure::in_file(shown, error))?;
@@ -164,7 +164,7 @@ pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<ShipAfte
     let earlier = earlier_trials(models, &before_trials[0].particulars, &checks, |_| true);
     let mut warnings = other_speeds(models, &before_trials[0].particulars);
     warnings.extend(prior::warning(&earlier));
-    Ok(ShipAfterTrials { ship, earlier, warnings })
+    Ok(UpdatedShip { ship, earlier, warnings })
 }
 
 /// Document entry of the models used for a ship, and of their checks, which begin with the closest hull; `takes_part`
@@ -191,7 +191,7 @@ fn earlier_trials(
 }
 
 /// Document entry of the models used with the records; `None` without models.
-pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &MethodIndependentResults) -> Option<EarlierTrials> {
+pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let is_member = |form: &str| facts.hulls.iter().any(|hull| hull.form == form);
     Some(earlier_trials(models, &ship, &facts.checks, is_member))

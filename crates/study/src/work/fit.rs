@@ -21,18 +21,18 @@ use ship::angle::to_deg;
 use trial::{Channel, Side, Trial, ZigZag, imo};
 
 use super::earlier_trials::{self, EarlierModel};
-use super::every_scale::{self, LabelledMethod, PREFERRED_METHODS};
-use super::loading::{FORM_RULED_OUT, rule_out_form};
+use super::loading::{FORM_RULED_OUT, is_form_ruled_out};
 use super::predicted_circle::PredictedCircle;
+use super::scale_comparison::{self, LabelledMethod, PREFERRED_METHODS};
 use super::single_records::RecordedZigZags;
-use crate::completed::ALL;
+use crate::completed::ALL_METHODS;
 use crate::documents::fit_curves::{FitCurves, FitRecord};
 use crate::documents::prior;
 use crate::progress;
 use crate::records::{self, file_and_hash, missing_track_warning, warning_source_of};
 use crate::scales::{self, RescaledRecords};
 use campaign::curves::{angle_curve_deg, replay_curves, zigzag_plot_data};
-use campaign::identified_ship::{self, MethodIndependentResults};
+use campaign::identified_ship::{self, RecordFacts};
 use campaign::statistics::grouped;
 
 /// Result of an identification.
@@ -120,7 +120,7 @@ pub fn fit(
     let together = scales::to_common_scale(records, validation)?;
     let (trials, held_out) = (&together.trials[..], &together.held_out[..]);
     warnings.extend(earlier_trials::check(priors, trials)?);
-    let ship = scales::particulars(trials);
+    let ship = scales::declared_particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
         .progress_with(progress::bar("methods", methods.len() as u64, quiet))
@@ -139,7 +139,7 @@ pub fn fit(
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
-    let shown = MethodIndependentResults::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
+    let shown = RecordFacts::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
     let earlier_trials = earlier_trials::entry(priors, trials, &shown);
     warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
@@ -155,7 +155,7 @@ pub fn fit(
         trials: records,
         ships: answers.iter().filter_map(ship_of).collect(),
         earlier_trials,
-        scales: every_scale::compared(methods, &answers, &together),
+        scales: scale_comparison::scales_entry(methods, &answers, &together),
         scaling: together.scaling_sentence(),
         length_m: ship.map(|ship| ship.length),
         speed_m_s: ship.map(|ship| ship.speed),
@@ -180,7 +180,7 @@ fn trial_entry(trial: &Trial, warnings: &mut Warnings) -> TrialEntry {
         sha256: sha256.into(),
         samples: trial.len(),
         duration_s: trial.duration(),
-        trial_particulars: records::particulars(trial),
+        trial_particulars: records::trial_particulars_entry(trial),
         zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
         no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
         circle: MeasuredCircle::from_trial(trial).map(|circle| circle_entry(&circle, trial.particulars())),
@@ -235,10 +235,10 @@ fn method_warnings((entry, estimate): &(MethodEntry, Option<Estimate>)) -> Vec<W
 }
 
 /// Warning for a ship of known draught whose model cannot be converted to another loading.
-fn no_loading(trials: &[Trial], shown: &MethodIndependentResults) -> Option<Warning> {
+fn no_loading(trials: &[Trial], shown: &RecordFacts) -> Option<Warning> {
     let has_form = trials.iter().filter_map(Trial::hull).any(|ship| ship.draught.is_some());
     let text = format!("{FORM_RULED_OUT}; `study predict --load` cannot take this ship to another loading");
-    (has_form && rule_out_form(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
+    (has_form && is_form_ruled_out(&shown.hulls)).then(|| WarningCode::NoLoading.warning(text))
 }
 
 /// Warning for a record whose first overshoot cannot be read.
@@ -257,13 +257,13 @@ pub fn labelled_methods(names: &[String], seed: Option<u64>) -> Result<Vec<Label
     let place = |id: &str| registry::DEFAULT_METHODS.iter().position(|usual| *usual == id);
     all.sort_by_key(|method| place(method.id()).unwrap_or(usize::MAX));
     let ids: Vec<&str> = all.iter().map(|method| method.id()).collect();
-    if let Some(unknown) = names.iter().find(|name| *name != ALL && !ids.contains(&name.as_str())) {
+    if let Some(unknown) = names.iter().find(|name| *name != ALL_METHODS && !ids.contains(&name.as_str())) {
         let ids = ids.join(", ");
-        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL}, or one of {ids}")));
+        return Err(Failure::input(format!("--method {unknown}: no such method; use {ALL_METHODS}, or one of {ids}")));
     }
     let is_named = |id: &str| match names {
         [] => place(id).is_some(),
-        names => names.iter().any(|name| name == id || name == ALL),
+        names => names.iter().any(|name| name == id || name == ALL_METHODS),
     };
     let chosen = all.into_iter().filter(|method| is_named(method.id())).map(|method| {
         let method = seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method);

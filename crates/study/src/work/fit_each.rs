@@ -6,10 +6,10 @@ use campaign::failure::Failure;
 use document::fit::VerdictEntry;
 use document::{Warning, Warnings};
 
-use super::every_scale::LabelledMethod;
 use super::fit::fit;
+use super::scale_comparison::LabelledMethod;
 use crate::options::ReadingOptions;
-use crate::records::read_all;
+use crate::records::read_records;
 
 /// Result for one log.
 pub struct LogFit {
@@ -29,7 +29,7 @@ impl LogFit {
     /// Result for a log that is identified alone by every method.
     pub fn fit_file(file: &Path, methods: &[LabelledMethod], reading: &ReadingOptions) -> Self {
         let mut warnings = Warnings::default();
-        let read = read_all(&[file.to_owned()], reading, &mut warnings);
+        let read = read_records(&[file.to_owned()], reading, &mut warnings);
         let (is_read, of_reader) = (read.is_ok(), warnings.ranked());
         let without = |error| Self { file: file.to_owned(), is_read, verdict: None, warnings: of_reader, error };
         match read.and_then(|trials| fit([&trials, &[]], methods, &[], true, warnings)) {

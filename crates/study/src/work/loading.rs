@@ -23,7 +23,7 @@ pub const FORM_RULED_OUT: &str = "a hull of the form mmg does not fit the record
                                 replay fails";
 
 /// `true` if records rule out a hull of this form: hulls were fitted, but none of this form.
-pub fn rule_out_form(hulls: &[IdentifiedHull]) -> bool {
+pub fn is_form_ruled_out(hulls: &[IdentifiedHull]) -> bool {
     !hulls.is_empty() && hulls.iter().all(|hull| hull.form != FORM)
 }
 
@@ -32,14 +32,14 @@ const NEEDED: [&str; 3] = ["beam-m", "draught-m", "block-coefficient"];
 
 /// Loading described in a file.
 #[derive(Debug)]
-pub struct DescribedLoadingCondition {
+pub struct LoadingCondition {
     /// Name of the file in messages.
     pub file: String,
     /// Particulars in the file; length and speed are 0 if it gives none.
     given: HullParticulars,
 }
 
-impl DescribedLoadingCondition {
+impl LoadingCondition {
     /// Particulars in `[ship]` and `[form]` of a file, read as in a sidecar.
     ///
     /// Fails as a sidecar does, or if the file has no draught.
@@ -67,14 +67,14 @@ impl DescribedLoadingCondition {
     /// Her hull is the one expected at this loading, given the trials. Her steering gear is unchanged, yaw rates are
     /// proportional to the approach speed, and the yaw response, which does not depend on draught, is not used.
     ///
-    /// Fails as [`only_hull`] does, if the loading is of another ship, or if it is that of the trials.
+    /// Fails as [`with_convertible_hull`] does, if the loading is of another ship, or if it is that of the trials.
     pub fn convert_ship(
         &self,
         shown: &str,
         ship: &IdentifiedShip,
         warnings: &mut Warnings,
     ) -> Result<(IdentifiedShip, f64), Failure> {
-        let mut ship = only_hull(shown, ship)?;
+        let mut ship = with_convertible_hull(shown, ship)?;
         let earlier = earlier_hulls(&ship).map_err(|error| Failure::in_file(shown, error))?;
         let at_trials = earlier[0].particulars;
         let to = self.particulars(shown, &at_trials)?;
@@ -158,8 +158,8 @@ impl DescribedLoadingCondition {
 /// Ship with only the hull that can be converted to another loading; `shown` is the name of her model in messages.
 ///
 /// Fails if there is no such hull, or if its draught, beam or block coefficient is not known.
-pub fn only_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
-    if rule_out_form(&ship.hulls) {
+pub fn with_convertible_hull(shown: &str, ship: &IdentifiedShip) -> Result<IdentifiedShip, Failure> {
+    if is_form_ruled_out(&ship.hulls) {
         let cure = "check particulars, rudder and speed of the trial, or fit more records";
         return Err(Failure::in_file(shown, format!("--load needs a hull of the form mmg: {FORM_RULED_OUT}; {cure}")));
     }
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
     use document::Warning;
     use document::identified_hull::{IdentifiedCoefficient, keyed_particulars};
-    use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
+    use ship::vessel::prime::{HullCoefficient, HullModel, is_frictional, is_trial_specific};
 
     /// A tanker in ballast.
     fn at_trial() -> HullParticulars {
@@ -206,11 +206,11 @@ mod tests {
 
     /// Coefficients by the formulas at some particulars.
     fn formulas(at: &HullParticulars) -> Vec<HullCoefficient> {
-        HullForm::mmg(&hull_prior(at).expect("a ship")).coefficients().to_vec()
+        HullModel::mmg(&hull_prior(at).expect("a ship")).coefficients().to_vec()
     }
 
-    /// Hull at a loading, and the warnings. At the trial the coefficients are half a standard deviation above the
-    /// formulas, with an uncertainty of a hundredth of one.
+    /// Hull at a loading, and the warnings. At the trial the coefficients are half a standard deviation of the prior
+    /// above the formulas; their standard deviation is a hundredth of that of the prior.
     fn taken(given: HullParticulars) -> (IdentifiedHull, Vec<Warning>) {
         let terms = formulas(&at_trial());
         let entry = |i: usize, j: usize| if i == j { (0.01 * terms[i].sd).powi(2) } else { 0.0 };
@@ -228,15 +228,15 @@ mod tests {
             ..IdentifiedHull::default()
         };
         let ship = IdentifiedShip { hulls: vec![IdentifiedHull::default(), hull], ..IdentifiedShip::default() };
-        let (loading, mut warnings) =
-            (DescribedLoadingCondition { file: "full.toml".into(), given }, Warnings::default());
+        let (loading, mut warnings) = (LoadingCondition { file: "full.toml".into(), given }, Warnings::default());
         let (mut ship, _) = loading.convert_ship("fit.json", &ship, &mut warnings).expect("another loading");
         assert_eq!(ship.hulls.len(), 1);
         (ship.hulls.remove(0), warnings.ranked())
     }
 
-    /// The change of the formulas and the departure of the ship from them, except coefficients that depend on friction
-    /// or belong to the trial, three times as uncertain. Unknown rudder and propeller are those of one ship.
+    /// A coefficient is the value of the formula at the loading plus the departure of the ship at the trial, with three
+    /// times its standard deviation. A frictional coefficient is that of the formula alone, a trial-specific
+    /// coefficient is unchanged. Unknown particulars of rudder and propeller are equal in both loadings.
     #[test]
     fn the_hull_is_that_of_the_formulas_with_her_departure() {
         let at_load = |ship: HullParticulars| {

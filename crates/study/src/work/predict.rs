@@ -19,9 +19,9 @@ use ship::Particulars;
 use trial::{Manoeuvre, Trial, file};
 
 use super::earlier_trials::{EarlierModel, LaterShip, update_ship};
-use super::loading::{DescribedLoadingCondition, only_hull};
-use super::stored_ships::{StoredShips, ships_of, text_of};
-use super::target_scale::{self, Declared, TargetScale, at_scale, is_same_scale, scale_mismatch};
+use super::loading::{LoadingCondition, with_convertible_hull};
+use super::stored_ships::{StoredShips, model_text, read_stored_ships};
+use super::target_scale::{self, SidecarConditions, TargetScale, at_scale, is_same_scale, scale_mismatch};
 use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
@@ -46,7 +46,8 @@ fn files(models: &[StoredModel]) -> Vec<String> {
     models.iter().map(|model| model.file.clone()).collect()
 }
 
-/// Mixture of the ships of several models at a scale. Fails if the ships are not alike.
+/// Mixture of the ships of several models at a scale, with equal weights. Fails if their scales differ or if they
+/// cannot be mixed.
 fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
     let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
     for model in models {
@@ -66,7 +67,7 @@ impl StoredModel {
     /// Fails if it cannot be read, or as [`from_document`](Self::from_document) does.
     pub fn from_file(path: &Path, request: &PredictRequest, warnings: &mut Warnings) -> Result<Self, Failure> {
         let shown = file::display_path(path).display().to_string();
-        Self::from_document(&shown, &text_of(path)?, request.method.as_deref(), request.calm, warnings)
+        Self::from_document(&shown, &model_text(path)?, request.method.as_deref(), request.calm, warnings)
     }
 
     /// Identified ship in the text of a `fit.json` or `trace.json`; of several methods that of `asked`, else that of
@@ -81,7 +82,7 @@ impl StoredModel {
         calm: bool,
         warnings: &mut Warnings,
     ) -> Result<Self, Failure> {
-        let StoredShips { mut ships, verdict, disbelief, records } = ships_of(shown, text)?;
+        let StoredShips { mut ships, verdict, rejection_reason, records } = read_stored_ships(shown, text)?;
         // A trace has only one estimate.
         let asked = asked.filter(|_| !ships.contains_key(TRACE));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
@@ -97,7 +98,7 @@ impl StoredModel {
         };
         warnings
             .extend(used.map(|text| Warning::new(WarningCode::Answer, WarningSource::File(shown.to_owned()), text)));
-        if let Some(because) = disbelief {
+        if let Some(because) = rejection_reason {
             let text = format!("no K and T can be taken from its records, so do not trust its predictions: {because}");
             warnings.push(WarningCode::NotIdentified, WarningSource::File(shown.to_owned()), text);
         }
@@ -133,9 +134,9 @@ impl StoredModel {
 
 /// Input of a prediction.
 pub struct PredictInput<'a> {
-    /// Models of the ship; several, all alike, are a mixture.
+    /// Models of the ship; several models have equal weights.
     pub models: &'a [StoredModel],
-    /// Earlier trials of the ship, which are not in the models.
+    /// Models of earlier trials, whose records are not in `models`.
     pub earlier: &'a [EarlierModel],
     /// Models of the same ship in the loading of the records; empty if no correction is needed.
     pub ballast: &'a [StoredModel],
@@ -144,7 +145,7 @@ pub struct PredictInput<'a> {
     /// Current removed from the tracks of the turns of the records; `None` for the current estimated from each track.
     pub current: Option<Current>,
     /// Conditions declared by a sidecar; `None` without one, or if there are records.
-    pub declared: Declared<'a>,
+    pub declared: SidecarConditions<'a>,
 }
 
 /// Requested manoeuvres, or those of the IMO criteria if neither a manoeuvre, a replay nor the form is requested; those
@@ -224,7 +225,7 @@ pub fn predict(
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|trial| validates_nothing(models, trial)));
     let (draws, scale) = (request.draws as usize, TargetScale::from_request(&request.scale, &records, declared)?);
-    let mut in_still_water = |record| turn::without_current(target_scale::at_own_scale(record, warnings), current);
+    let mut in_still_water = |record| turn::without_current(target_scale::at_declared_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let mixture = mixture_of(models, scale)?;
     let particulars = mixture.particulars();
@@ -257,9 +258,9 @@ pub fn predict(
         corrected: corrections.iter().flatten().cloned().collect(),
         ballast: files(ballast),
         earlier_trials: sentences,
-        hull: !mixture.first().hulls.is_empty(),
+        hull: !mixture.first_ship().hulls.is_empty(),
         load: taken.as_ref().map(|(.., load)| load.clone()),
-        validity_range: mixture.first().validity_range,
+        validity_range: mixture.first_ship().validity_range,
         ..PredictDocument::default()
     };
     if request.form {
@@ -292,7 +293,7 @@ fn fill_form(
     particulars: Option<Particulars>,
     records: &[(Trial, Option<Current>)],
     corrections: &[Option<Correction>],
-    declared: Declared,
+    declared: SidecarConditions,
 ) {
     let held = records.iter().zip(corrections).map(|((trial, current), correction)| FormRecord {
         trial,
@@ -312,7 +313,7 @@ fn at_loading(
     ballast: &[StoredModel],
     warnings: &mut Warnings,
 ) -> Result<(Vec<StoredModel>, Vec<StoredModel>, OtherLoading), Failure> {
-    let loading = DescribedLoadingCondition::from_file(path)?;
+    let loading = LoadingCondition::from_file(path)?;
     let mut draughts = Vec::new();
     let mut taken = |file: &str, ship_at_trials: &IdentifiedShip| {
         let (ship, draught) = loading.convert_ship(file, ship_at_trials, warnings)?;
@@ -320,7 +321,7 @@ fn at_loading(
         Ok(ship)
     };
     let models = models.iter().map(|model| model.with(&mut taken)).collect::<Result<_, _>>()?;
-    let ballast = ballast.iter().map(|model| model.with(only_hull)).collect::<Result<_, _>>()?;
+    let ballast = ballast.iter().map(|model| model.with(with_convertible_hull)).collect::<Result<_, _>>()?;
     let (draught_m, factor) = (loading.draught(), Likeness::OtherHull.factor());
     Ok((models, ballast, OtherLoading { file: loading.file, draughts_at_trials_m: draughts, draught_m, factor }))
 }

@@ -1,6 +1,6 @@
 //! Turning circle predicted from the recommended estimate of a fit: characteristics and median track of drawn ships.
 
-use document::fit::{Belief, FitDocument, MedianEntry, PredictedCircleEntry};
+use document::fit::{FitDocument, KtUsability, MedianEntry, PredictedCircleEntry};
 use predict::{Prediction, ShipMixture};
 use ship::angle::from_deg;
 use trial::{Manoeuvre, Side};
@@ -24,7 +24,7 @@ impl PredictedCircle {
     /// starboard. `None` if no K and T are accepted, if no hull was fitted to the records, or if the drawn ships do not
     /// determine its size.
     pub fn from_document(document: &FitDocument) -> Option<Self> {
-        let verdict = document.verdict.as_ref().filter(|verdict| verdict.believe == Belief::Yes)?;
+        let verdict = document.verdict.as_ref().filter(|verdict| verdict.believe == KtUsability::Yes)?;
         let ship = document.ships.get(&verdict.method).filter(|ship| !ship.hulls.is_empty())?;
         let recorded = document.trials.iter().find_map(|trial| trial.circle.as_ref());
         let is_to_port = recorded.is_some_and(|circle| circle.side == Side::Port.to_string());

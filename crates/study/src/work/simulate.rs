@@ -2,7 +2,7 @@
 
 use campaign::engine;
 use campaign::failure::Failure;
-use campaign::outside_estimates::part_name;
+use campaign::outside_estimates::numbered_record_name;
 use campaign::scenario::Scenario;
 use campaign::scenario::problem::suggestion;
 use campaign::shard::TrialId;
@@ -17,7 +17,7 @@ const MAX_RECORDS: u64 = 100_000;
 /// Requested trials, in their order.
 ///
 /// Fails if the trials are measured records, if no such cell or trial exists, or if there are too many trials.
-pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<TrialId>, Failure> {
+pub fn requested_trials(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<TrialId>, Failure> {
     if scenario.cells.iter().any(|cell| cell.record_set().is_some()) {
         let problem = "its trials are measured records, and nothing is simulated; give a scenario with a ship";
         return Err(Failure::in_file(&request.scenario, problem));
@@ -89,7 +89,7 @@ pub fn simulate_record_files(scenario: &Scenario, task: TrialId, name: &str) -> 
         let truth = truth(scenario, task, simulated, truths)?;
         let truth = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
         let sidecar = trial::writer::sidecar_toml(&simulated.trial);
-        Ok(RecordFiles { name: part_name(name, number), table, sidecar, truth })
+        Ok(RecordFiles { name: numbered_record_name(name, number), table, sidecar, truth })
     };
     simulated.iter().enumerate().map(files).collect::<Result<_, String>>().map_err(refuse)
 }

@@ -39,7 +39,7 @@ impl RecordedZigZag<'_> {
     }
 }
 
-/// Zig-zags among some records, each with its amplitude.
+/// All zig-zags among some records, each with its name and amplitude.
 pub struct RecordedZigZags<'a>(Vec<RecordedZigZag<'a>>);
 
 impl<'a> RecordedZigZags<'a> {

@@ -10,7 +10,7 @@ use trial::Manoeuvre;
 /// Number of drawn ships.
 const DRAWS: usize = 40;
 
-/// Maximum rudder angle as a multiple of the largest one in the records.
+/// Maximum rudder angle as a multiple of the largest rudder angle in the records.
 const RUDDER_RATIO: f64 = 1.3;
 
 /// Range of the maximum rudder angle, deg.

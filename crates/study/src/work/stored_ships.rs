@@ -11,10 +11,10 @@ use document::trace::SCHEMA as TRACE_SCHEMA;
 use serde_json::Value;
 use trial::file;
 
-/// A stored model; the covariances of the largest mixtures have a hundredth of this size.
+/// Kind of file of a stored model, with its maximum size: a hundred times the covariances of the largest mixtures.
 const MODEL: file::FileKind = file::FileKind { name: "a model", max_bytes: 1 << 26 };
 
-/// Expected documents, for messages.
+/// Part of a message: the documents that were expected.
 const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// Identified ships in a stored fit or trace.
@@ -24,13 +24,13 @@ pub struct StoredShips {
     /// Method that the verdict of a fit recommends; `None` for a trace, and if the method has no covariance.
     pub verdict: Option<String>,
     /// Reason why no K and T are accepted from the records of a fit; `None` for any other verdict, and for a trace.
-    pub disbelief: Option<String>,
+    pub rejection_reason: Option<String>,
     /// Records used in the document, including those of its priors: their files by SHA-256.
     pub records: BTreeMap<String, String>,
 }
 
 /// Text of a model. Fails if it cannot be read.
-pub fn text_of(path: &Path) -> Result<String, Failure> {
+pub fn model_text(path: &Path) -> Result<String, Failure> {
     name::study_name(path)?;
     let shown = file::display_path(path).display().to_string();
     file::read_text(path, MODEL).map_err(|error| Failure::in_file(&shown, format!("{error}; {EXPECTED}")))
@@ -38,7 +38,7 @@ pub fn text_of(path: &Path) -> Result<String, Failure> {
 
 /// Content of the text of a `fit.json` or `trace.json`; `shown` is its name in messages. Fails if it is no such
 /// document, or if it has another version.
-pub fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
+pub fn read_stored_ships(shown: &str, text: &str) -> Result<StoredShips, Failure> {
     let refuse = |problem: String| Failure::in_file(shown, problem);
     let unread = |error| refuse(format!("what is known of the ship cannot be read: {error}"));
     let value: Value =
@@ -65,8 +65,8 @@ pub fn ships_of(shown: &str, text: &str) -> Result<StoredShips, Failure> {
     };
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);
     let because = value["verdict"]["because"].as_str().unwrap_or("its verdict does not say why");
-    let disbelief = (value["verdict"]["believe"] == "no").then(|| because.to_owned());
-    Ok(StoredShips { ships, verdict, disbelief, records: records_of(&value, records) })
+    let rejection_reason = (value["verdict"]["believe"] == "no").then(|| because.to_owned());
+    Ok(StoredShips { ships, verdict, rejection_reason, records: records_of(&value, records) })
 }
 
 /// Records in a document under `key`, and those of its priors: their files by SHA-256.

@@ -14,7 +14,7 @@ use crate::options::ScaleOptions;
 use crate::records::{file_and_hash, warning_source_of};
 
 /// Name and conditions of a sidecar; `None` without a sidecar.
-pub type Declared<'a> = Option<(&'a str, &'a DeclaredConditions)>;
+pub type SidecarConditions<'a> = Option<(&'a str, &'a DeclaredConditions)>;
 
 /// Length and approach speed that ships are scaled to: the requested ones, or those of a trial.
 #[derive(Clone, Copy)]
@@ -23,22 +23,26 @@ pub struct TargetScale {
     /// Approach speed; `None` for that of the same Froude number.
     speed: Option<f64>,
     /// `true` if the scale is requested, `false` if it is that of a trial.
-    is_asked: bool,
+    is_requested: bool,
 }
 
 impl TargetScale {
     /// Scale of a trial with these particulars.
     pub fn from_particulars(Particulars { length, speed }: Particulars) -> Self {
-        Self { length, speed: Some(speed), is_asked: false }
+        Self { length, speed: Some(speed), is_requested: false }
     }
 
     /// Scale of a prediction: the requested one, else that of the records, else that of the ship that a sidecar
     /// declares. `None` for that of the model.
     ///
     /// Fails if the records are of ships of several lengths.
-    pub fn from_request(asked: &ScaleOptions, records: &[Trial], declared: Declared) -> Result<Option<Self>, Failure> {
+    pub fn from_request(
+        asked: &ScaleOptions,
+        records: &[Trial],
+        declared: SidecarConditions,
+    ) -> Result<Option<Self>, Failure> {
         if let Some(length) = asked.length_m {
-            return Ok(Some(Self { length, speed: asked.speed(), is_asked: true }));
+            return Ok(Some(Self { length, speed: asked.speed(), is_requested: true }));
         }
         let of_sidecar = declared.and_then(|(file, conditions)| Some((file, conditions.particulars?)));
         let of_records = records.iter().filter_map(|record| Some((file_and_hash(record).0, record.particulars()?)));
@@ -55,7 +59,7 @@ impl TargetScale {
     /// number, not the speed in the record, which falls from the first rows on.
     pub fn from_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
-            (Some(ship), Some(asked)) if asked.is_asked && is_same_length(ship.length, asked.length) => scale,
+            (Some(ship), Some(asked)) if asked.is_requested && is_same_length(ship.length, asked.length) => scale,
             (ship, _) => ship.map(Self::from_particulars).or(scale),
         }
     }
@@ -79,11 +83,14 @@ pub fn is_same_scale(a: Particulars, b: Particulars) -> bool {
     a.has_equal_length(&b) && !differs_in_froude_number(&a, &b)
 }
 
-/// Ship at a scale; a ship of unknown scale is assigned this scale.
+/// Ship scaled to a length and approach speed; unchanged for `None`. A ship of unknown scale is assigned this scale if
+/// it has a speed.
+///
+/// Fails if the ship cannot be scaled.
 pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
-    let Some(TargetScale { length, speed, is_asked }) = scale else { return Ok(ship.clone()) };
+    let Some(TargetScale { length, speed, is_requested }) = scale else { return Ok(ship.clone()) };
     // The speed of a trial is estimated from its beginning and never quite equals that of another trial.
-    let is_speed_of = |scale: Particulars, speed| match is_asked {
+    let is_speed_of = |scale: Particulars, speed| match is_requested {
         true => speed == scale.speed,
         false => is_same_scale(scale, Particulars { speed, ..scale }),
     };
@@ -96,8 +103,9 @@ pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<Ide
     }
 }
 
-/// Record at the scale that its sidecar declares, if another one is requested: a scale model is replayed at its scale.
-pub fn at_own_scale(record: Trial, warnings: &mut Warnings) -> Trial {
+/// Record at the scale that its sidecar declares, with a warning if another length is requested: a scale model is
+/// replayed at its scale.
+pub fn at_declared_scale(record: Trial, warnings: &mut Warnings) -> Trial {
     let is_other =
         |other: &Particulars| record.particulars().is_some_and(|given| !is_same_length(other.length, given.length));
     let Some(declared) = record.conditions().particulars.filter(is_other) else { return record };

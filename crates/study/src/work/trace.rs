@@ -5,7 +5,7 @@ use ::trace::{Analysis, FoldObserver, Innovations, Settings, TraceError};
 use campaign::Observer;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::identified_ship::{self, MethodIndependentResults};
+use campaign::identified_ship::{self, RecordFacts};
 use document::trace::{MissingMomentEntry, RecordEntry, TraceDocument};
 use document::{WarningCode, Warnings, names};
 use identify::output_error;
@@ -23,7 +23,9 @@ use crate::documents::curves::{self, TraceCurves, slugs, suffix};
 use crate::documents::{self, TRACE_FILE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
-use crate::records::{file_and_hash, late_rudder_message, missing_track_warning, particulars, unique_names};
+use crate::records::{
+    file_and_hash, late_rudder_message, missing_track_warning, trial_particulars_entry, unique_names,
+};
 use crate::scales::{self, RescaledRecords};
 use crate::terminal::Terminal;
 
@@ -94,18 +96,18 @@ pub fn trace(
 ) -> Result<TraceResult, Failure> {
     let together = scales::to_common_scale(records, validation)?;
     warnings.extend(earlier_trials::check(priors, &together.trials)?);
-    let settings = &Settings { earlier: earlier_trials::hulls(priors), ..settings.clone() };
+    let settings = &Settings { earlier_hulls: earlier_trials::hulls(priors), ..settings.clone() };
     let watch = TraceWatch {
-        busy: progress::busy("searching for what the model lacks", quiet),
+        busy: progress::spinner("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
     };
     let analysis = ::trace::trace_with_observer(&together.trials, &together.held_out, settings, &watch);
     watch.end();
     let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
     let (scales, RescaledRecords { trials, held_out, .. }) = (together.scaling_sentence(), together);
-    let shown = MethodIndependentResults::from_trials(&trials).with_motion(Some(&analysis), &settings.earlier);
+    let shown = RecordFacts::from_trials(&trials).with_motion(Some(&analysis), &settings.earlier_hulls);
     warnings.extend(missing_track_warning(&shown));
-    warnings.extend(unusual_ship(&analysis.base, scales::particulars(&trials), records));
+    warnings.extend(unusual_ship(&analysis.base, scales::declared_particulars(&trials), records));
     let names = unique_names(trials.iter().chain(&held_out).map(Trial::name));
     let innovations = analysis.innovations();
     let entry = |((number, trial), name): ((usize, &Trial), &String)| RecordEntry {
@@ -117,11 +119,11 @@ pub fn trace(
         innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
         length_m: trial.particulars().map(|ship| ship.length),
         speed_m_s: trial.particulars().map(|ship| ship.speed),
-        trial_particulars: particulars(trial),
+        trial_particulars: trial_particulars_entry(trial),
     };
     let entries: Vec<RecordEntry> = records.iter().chain(validation).enumerate().zip(&names).map(entry).collect();
     let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
-    let (staircase, table) = curves::staircase(analysis.staircase());
+    let (staircase, table) = curves::staircase(analysis.inclusion_path());
     let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = identified_ship::from_analysis(&analysis, &shown);
@@ -214,8 +216,8 @@ fn larger_rudder(analysis: &Analysis, fitted: &[Trial], held_out: &[Trial]) -> O
 /// Sentence on the most informative next trial.
 fn next_trial(analysis: &Analysis, trials: &[Trial], held_out: &[Trial]) -> String {
     let first = larger_rudder(analysis, trials, held_out).unwrap_or_default();
-    let prospects = analysis.prospects(&planned::planned_trials(analysis, trials));
-    let Some(best) = prospects.first() else {
+    let values = analysis.planned_trial_values(&planned::planned_trials(analysis, trials));
+    let Some(best) = values.first() else {
         return first + "The fitted model cannot be steered through any standard manoeuvre.";
     };
     let pairs = |pairs: &[[String; 2]]| -> String {

@@ -1,12 +1,12 @@
-//! What `study fit` says of a good record: which methods, which warnings, with figures and without.
+//! Tests of `study fit` on a usable record: methods, verdict, warnings, output with and without figures.
 
 use identify::registry::{self, DEFAULT_METHODS};
 use serde_json::Value;
 
 use crate::desk::{Desk, of_repository, with_column, zig_zag_csv};
 
-/// Nobody has to read past a method that is known to be wrong, or one that repeats another; both are run when asked
-/// for.
+/// Without `--method` only the usual methods run: not `srivc`, which equals `output-error`, and not
+/// `fourier-published`, whose T is biased. `--method all` runs every method and gives the same verdict.
 #[test]
 fn fit_asks_the_usual_methods_and_all_on_request() {
     let desk = Desk::new();
@@ -60,7 +60,7 @@ fn what_can_be_drawn_can_be_told_without_figures() {
     assert!(desk.path("fit/fit.png").is_file() && desk.bytes("fit/fit.json") == bytes);
 }
 
-/// What was mended or is doubtful in a record is known to whoever reads the answer, in `fit.json` and on the page.
+/// Warnings of the reader about corrected or doubtful readings are in `fit.json` and in `report.md`.
 #[test]
 fn what_the_reader_noticed_is_in_the_document() {
     let desk = Desk::new();
@@ -83,8 +83,8 @@ fn what_the_reader_noticed_is_in_the_document() {
     }
 }
 
-/// What may make K and T wrong comes first, three warnings stand on the screen, and the page has all of them. What a
-/// method says of an answer that nobody is to take is a note.
+/// The most severe warnings come first; the screen has three of them, the page all. Warnings of methods other than that
+/// of the verdict are notes.
 #[test]
 fn warnings_are_few_and_the_dearest_first() {
     let desk = Desk::new();

@@ -1,9 +1,9 @@
-//! The benchmark: `study bench`.
+//! Tests of `study bench`.
 
 use crate::desk::{Desk, sha256, zig_zag_csv};
 use crate::scenarios::GOOD;
 
-/// A scenario of measured records, one of them lost, and a simulated one beside it, on a desk.
+/// Writes a scenario of two measured records, of which the second is missing, and a simulated scenario.
 fn lay_out(desk: &Desk) {
     desk.file("far/away.csv", zig_zag_csv());
     let sha256 = sha256(&desk.bytes("far/away.csv"));
@@ -32,7 +32,8 @@ fn medians(desk: &Desk, file: &str) -> Vec<(String, String, f64)> {
     boards.iter().flat_map(of_board).collect()
 }
 
-/// It is the same with any number of threads, goes on where it was, and nothing stale is left.
+/// The results do not depend on the number of threads. Another request in the same folder needs `--restart`, which also
+/// removes files of the earlier run.
 #[test]
 fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
     let desk = Desk::new();
@@ -49,7 +50,7 @@ fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
         let found = medians.iter().find(|(own, label, _)| own == board && label == method);
         found.unwrap_or_else(|| panic!("{board}: {method}: {medians:?}")).2
     };
-    // Perfectly recorded, read from a table: what output error leaves is the rounding of the table.
+    // The record has no noise, so the error of output error is the rounding of the table.
     assert!(of("identify, found", "output-error") < 1e-3, "{medians:?}");
     for board in ["identify, found", "identify, made"] {
         assert!(of(board, "straight-on") > 10.0 * of(board, "output-error"), "{medians:?}");
@@ -94,7 +95,7 @@ fn what_cannot_be_run_is_refused_in_one_message() {
     desk.file("short.toml", changed.replacen(char::is_numeric, "x", 1));
     desk.run(&["check", "short.toml"])
         .is_refused(2, &["short.toml:", "far/away.csv", "expected 64 hexadecimal digits"]);
-    // Another file under the name of a record, and one that is not there: nothing is left to be asked.
+    // The first record has another content and the second is missing, so there is no case to score.
     desk.file("far/away.csv", format!("{}\n", zig_zag_csv()));
     let said = ["far/away.csv: it is another file: its SHA-256 begins with ", "far/lost.csv: there is no such file"];
     desk.run(&["bench", "found.toml", "--out", "o"])
@@ -102,7 +103,7 @@ fn what_cannot_be_run_is_refused_in_one_message() {
     desk.run(&["found.toml"]).is_refused(2, &[&["none of its records can be used", "KEMPF_DATA"], &said[..]].concat());
 }
 
-/// The program holds its benchmark: it runs where no file of the project is.
+/// The scenarios of the benchmark are part of the program, so it runs in any folder.
 #[test]
 fn the_benchmark_of_the_project_runs_from_anywhere() {
     let desk = Desk::new();
@@ -113,7 +114,7 @@ fn the_benchmark_of_the_project_runs_from_anywhere() {
     assert!(run.err.contains(skipped), "{}", run.err);
 }
 
-/// Hours of work are not begun for a folder that cannot be written.
+/// A folder that cannot be written is refused before any trial runs.
 #[cfg(unix)]
 #[test]
 fn the_folder_of_results_is_held_before_the_work() {

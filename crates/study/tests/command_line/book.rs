@@ -1,15 +1,15 @@
-//! What the README and the book tell a reader to type is typed here, page by page, in a folder with the scenarios of
-//! the repository, in which git then sees nothing but the files that a reader was told to write. The info string of a
-//! block says what becomes of it:
+//! Runs the commands of README.md and of the book, page by page, in a folder with the scenarios and examples of the
+//! repository. Afterwards git may see no file except those that the page tells a reader to write. The info string of a
+//! block decides its treatment:
 //!
 //! | block | here |
 //! |---|---|
 //! | `sh` | every line is run |
-//! | `sh,needs=PROGRAM` | the same where the machine has this program |
-//! | `sh,skip=WHY` | listed, and not run |
+//! | `sh,needs=PROGRAM` | every line is run if the machine has this program |
+//! | `sh,skip=WHY` | listed with the reason, not run |
 //! | `LANGUAGE,file=NAME` | written to a file of this name |
-//! | `text,shown` | stands in what the block before it printed; a line `…` stands for any lines |
-//! | any other language | left alone |
+//! | `text,shown` | must be in the output of the block before it; a line `…` matches any lines |
+//! | another language of [`LANGUAGES`] | ignored |
 
 #![cfg(unix)]
 
@@ -22,17 +22,17 @@ use rayon::prelude::*;
 
 use crate::desk::{copy, of_repository};
 
-/// Languages of blocks; a command in a block of another one would never be run.
+/// Languages of blocks. Any other language is an error, because its commands would never run.
 const LANGUAGES: [&str; 10] = ["sh", "toml", "csv", "text", "json", "rust", "python", "octave", "latex", "bibtex"];
 
-/// How a reader of the repository calls the program, longest first.
+/// Calls of the program from a clone of the repository, the longest first.
 const CALLS: [&str; 2] = ["cargo run --release -p study --", "cargo run -p study --"];
 
-/// A block between fences.
+/// Fenced code block of a page.
 #[derive(Debug, PartialEq)]
 struct Block {
     language: String,
-    /// What follows the language.
+    /// Info string after the language and a comma.
     mark: String,
     /// Number of its first line in the page.
     line: usize,
@@ -67,7 +67,7 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// Commands of a block with the lines they begin in; a line that ends with `\` goes on in the next one.
+/// Commands of a block, each with the number of its first line; a line that ends with `\` continues in the next line.
 fn commands(block: &Block) -> Vec<(usize, String)> {
     let mut commands: Vec<(usize, String)> = Vec::new();
     let mut goes_on = false;
@@ -83,7 +83,7 @@ fn commands(block: &Block) -> Vec<(usize, String)> {
     commands.into_iter().map(|(line, command)| (line, called(command))).collect()
 }
 
-/// `true` if the parts of a text stand in another one, in their order.
+/// `true` if the parts of `text` between lines `…` occur in `printed`, in their order.
 fn is_shown(text: &str, printed: &str) -> bool {
     let mut rest = printed;
     text.split("…\n").all(|part| {
@@ -93,7 +93,7 @@ fn is_shown(text: &str, printed: &str) -> bool {
     })
 }
 
-/// The folder in which a page is worked through.
+/// Temporary folder in which the commands of a page run.
 struct Scratch {
     folder: tempfile::TempDir,
     path: std::ffi::OsString,
@@ -117,7 +117,7 @@ impl Scratch {
         scratch
     }
 
-    /// What git sees of all that was done, the files that a page has written left out; empty without git.
+    /// Files that git reports as changed or new, without those `written` by the page; empty without git.
     fn left(&self, written: &[&str]) -> Result<String, String> {
         let look = "git diff --name-only && git ls-files --others --exclude-standard";
         let seen = self.run(&format!("if command -v git > /dev/null; then {look}; fi"))?;
@@ -136,7 +136,7 @@ impl Scratch {
         self.shell(&format!("command -v {program}")).output().is_ok_and(|output| output.status.success())
     }
 
-    /// What a command prints, or all that is known of its failure.
+    /// Standard output of a command. Fails with the command, its exit status and all its output.
     fn run(&self, command: &str) -> Result<String, String> {
         let output = self.shell(command).output().map_err(|error| format!("{command}: {error}"))?;
         let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
@@ -147,13 +147,13 @@ impl Scratch {
     }
 }
 
-/// Works through a page; the first thing that is wrong ends it. What was not run is said.
+/// Runs the blocks of a page; returns those that were not run, each with the reason. Fails at the first fault.
 fn work_through(page: &str) -> Result<Vec<String>, String> {
-    // Most pages have nothing to be typed.
+    // Most pages have no command and need no folder.
     let made = OnceCell::new();
     let scratch = || made.get_or_init(Scratch::new);
     let (mut left_out, mut written) = (Vec::new(), Vec::new());
-    // Of the last block of commands; none where it was not run.
+    // Output of the last block of commands; `None` if it was not run.
     let mut printed = None;
     let blocks = blocks(page);
     for block in &blocks {
@@ -202,7 +202,7 @@ fn work_through(page: &str) -> Result<Vec<String>, String> {
     }
 }
 
-/// The README, the pages of the book, of the examples and of the crates.
+/// README.md and all pages of the book, the examples and the crates.
 fn pages() -> Vec<PathBuf> {
     let mut pages = vec![of_repository("README.md")];
     let mut folders: Vec<PathBuf> = ["docs/src", "examples", "crates"].map(of_repository).to_vec();

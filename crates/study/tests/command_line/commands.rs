@@ -1,4 +1,4 @@
-//! The other commands and usage: run, report, simulate, list.
+//! Tests of scenarios, `report`, `list`, `simulate`, fits of several records, and wrong usage.
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
 use crate::scenarios::GOOD;
@@ -83,7 +83,7 @@ fn wrong_usage_is_exit_code_2() {
     }
 }
 
-/// A mistyped command is answered with the commands there are, whatever stands behind it.
+/// The message on a mistyped command lists the commands, whatever arguments follow.
 #[test]
 fn a_word_that_is_no_command_is_answered_with_those_there_are() {
     let desk = Desk::new();
@@ -104,7 +104,7 @@ fn simulated_trials_are_records_with_the_truth_beside_them() {
     let truth = desk.json(&format!("{name}.truth.json"));
     assert_eq!((truth["cell"].as_str(), truth["replicate"].as_u64()), (Some("0.2"), Some(1)));
     assert_eq!((truth["nearest"]["T_s"].as_f64(), truth["own"].is_null()), (Some(16.3), true));
-    // The record is the trial that the study identifies, and fit finds its ship.
+    // `study fit` identifies the record of a trial with the T of its ship.
     let fit = desk.run(&["fit", &format!("{name}.csv"), "--method", "output-error", "--out", "fit"]);
     fit.is_done();
     let found = desk.json("fit/fit.json")["methods"][0]["parameters"]["T_s"]["value"].as_f64().expect("an answer");
@@ -124,7 +124,7 @@ fn simulated_trials_are_records_with_the_truth_beside_them() {
     }
 }
 
-/// The records of a trial that has several are written beside each other, and identified together they are the trial.
+/// A trial with several records gives several files, which identified together have the T of its ship.
 #[test]
 fn further_records_of_a_trial_are_written_beside_the_first() {
     let desk = Desk::new();
@@ -143,7 +143,7 @@ fn further_records_of_a_trial_are_written_beside_the_first() {
     desk.run(&["check", "wrong.toml"]).is_refused(2, &["further record 1", "-20"]);
 }
 
-/// The records that README and tutorial read are what the scenario beside them makes today.
+/// The sample records of README and tutorial are those that the program simulates from their scenario.
 #[test]
 fn the_sample_records_are_those_of_their_scenario() {
     let desk = Desk::new();
@@ -159,7 +159,8 @@ fn the_sample_records_are_those_of_their_scenario() {
     }
 }
 
-/// Each record is told apart, on the screen and in the file, and the folder is that of both.
+/// Every record has its zig-zag on the screen and in `fit.json`; the default folder is named after the first record and
+/// the number of further records.
 #[test]
 fn several_records_have_a_zig_zag_each() {
     let desk = Desk::new();

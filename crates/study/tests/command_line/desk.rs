@@ -1,4 +1,4 @@
-//! Running the binary as a user does: a folder of its own, the exit code, and what it says.
+//! Runs of the program as a user makes them: a temporary folder, the exit code and the output.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -16,12 +16,12 @@ use simulate::{Manoeuvre, Recording, SimulatedShip, Simulation, SteeringGear, St
 
 use crate::schemas;
 
-/// A folder that goes away, and the program run in it.
+/// Temporary folder in which the program runs.
 pub struct Desk {
     folder: tempfile::TempDir,
 }
 
-/// What a run gave.
+/// Result of a run.
 pub struct Run {
     /// Exit code.
     pub code: Option<i32>,
@@ -48,13 +48,14 @@ impl Desk {
         name
     }
 
-    /// Runs the program to its end. Of records and predictions no figures are made unless they are requested: drawing
-    /// takes most of the time of these commands.
+    /// Runs the program to its end. `fit`, `trace` and `predict` draw no figures without `--figures`: drawing takes
+    /// most of their time.
     pub fn run(&self, arguments: &[&str]) -> Run {
         self.draw(&undrawn(arguments))
     }
 
-    /// The same as a user has it, with all figures.
+    /// Runs the program to its end, with its default figures. After success it validates all documents in the folder by
+    /// their schemas.
     pub fn draw(&self, arguments: &[&str]) -> Run {
         let run = Run::of(self.command(arguments).output().expect("the program starts"));
         if run.code == Some(0) {
@@ -69,12 +70,12 @@ impl Desk {
         command
     }
 
-    /// As [`Self::run`] with a text on standard input.
+    /// As [`Self::run`] with a text on standard input, without the validation of documents.
     pub fn run_with_input(&self, arguments: &[&str], input: impl AsRef<[u8]>) -> Run {
         let mut command = self.command(&undrawn(arguments));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the program starts");
-        // A program that refuses its arguments reads nothing, and one that has read enough no more.
+        // The program may end before it has read the whole input; the write then fails.
         let _ = child.stdin.take().expect("it is piped").write_all(input.as_ref());
         Run::of(child.wait_with_output().expect("it ends"))
     }
@@ -84,7 +85,7 @@ impl Desk {
         self.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts")
     }
 
-    /// The same, and waits until something holds, which has to be before it ends.
+    /// Starts the program and waits until `holds` returns `true`. Panics if the program ends earlier.
     pub fn start_until(&self, arguments: &[&str], mut holds: impl FnMut() -> bool) -> Child {
         let mut run = self.start(arguments);
         while !holds() {
@@ -102,7 +103,7 @@ impl Desk {
         String::from_utf8(self.bytes(name)).expect("UTF-8")
     }
 
-    /// The rows of a Parquet file, by the names of its columns.
+    /// Rows of a Parquet file, their cells by column name.
     pub fn rows(&self, name: &str) -> Vec<BTreeMap<String, Field>> {
         let file = SerializedFileReader::new(Bytes::from(self.bytes(name))).expect("a Parquet file");
         let rows = file.get_row_iter(None).expect("rows").map(|row| row.expect("a row").into_columns());
@@ -114,7 +115,7 @@ impl Desk {
     }
 }
 
-/// A number in a row of a Parquet file.
+/// Number in a column of a Parquet row. Panics if it is no number.
 pub fn number(row: &BTreeMap<String, Field>, name: &str) -> f64 {
     match row[name] {
         Field::Double(value) => value,
@@ -122,14 +123,14 @@ pub fn number(row: &BTreeMap<String, Field>, name: &str) -> f64 {
     }
 }
 
-/// Arguments with which no figures are made, unless they say which.
+/// Arguments with `--figures none` added for `fit`, `trace` and `predict`, unless they have `--figures`.
 fn undrawn<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     let can_be_told = ["fit", "trace", "predict"].iter().any(|command| arguments.first() == Some(command));
     let told: &[&str] = if can_be_told && !arguments.contains(&"--figures") { &["--figures", "none"] } else { &[] };
     [arguments, told].concat()
 }
 
-/// Asks a run to stop as Ctrl-C does; how it ended, and how long that took.
+/// Interrupts a run as Ctrl-C does; returns its result, and the time until it ended.
 pub fn interrupted(run: Child) -> (Run, Duration) {
     let asked = Instant::now();
     let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
@@ -143,13 +144,13 @@ impl Run {
         Self { code: status.code(), out, err }
     }
 
-    /// The run went well.
+    /// Asserts that the exit code is 0.
     pub fn is_done(&self) -> &Self {
         assert_eq!(self.code, Some(0), "{}\n{}", self.out, self.err);
         self
     }
 
-    /// The run ended with `code`, nothing on standard output, and one message that holds every one of `parts`.
+    /// Asserts that the exit code is `code`, standard output is empty, and the only message contains all `parts`.
     pub fn is_refused(&self, code: i32, parts: &[&str]) {
         assert_eq!(self.code, Some(code), "{}\n{}", self.out, self.err);
         assert_eq!(self.out, "", "an error is no result");
@@ -168,7 +169,7 @@ pub fn zig_zag_csv() -> String {
     zig_zag_csv_of(&ship::ships::find("yukun").expect("it is in the registry"))
 }
 
-/// The same with another ship.
+/// As [`zig_zag_csv`], of another ship.
 pub fn zig_zag_csv_of(ship: &Ship) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0));
     let simulation = Simulation {
@@ -183,7 +184,7 @@ pub fn zig_zag_csv_of(ship: &Ship) -> String {
     ["t_s,heading_deg,rudder_deg\n".to_owned()].into_iter().chain(rows).collect()
 }
 
-/// The record with one column changed; the function gets the number of the row, from 0.
+/// Record with a changed column; `change` gets the number of the row, from 0, and the value.
 pub fn with_column(csv: &str, name: &str, change: impl Fn(usize, f64) -> String) -> String {
     let header = csv.lines().next().expect("a header");
     let place = header.split(',').position(|column| column == name).expect("the column is there");
@@ -197,7 +198,8 @@ pub fn with_column(csv: &str, name: &str, change: impl Fn(usize, f64) -> String)
     [header.to_owned()].into_iter().chain(rows).map(|line| line + "\n").collect()
 }
 
-/// The folder of measured records, or `None` after saying that the test is skipped.
+/// Folder of measured records, `KEMPF_DATA` or its default; `None` if it is missing, after a message that the test is
+/// skipped.
 pub fn measured() -> Option<PathBuf> {
     let folder = std::env::var_os("KEMPF_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
@@ -208,7 +210,7 @@ pub fn measured() -> Option<PathBuf> {
     None
 }
 
-/// Copies all that is in a folder.
+/// Copies a folder with all its content.
 pub fn copy(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(from).expect("it is there").flatten() {
@@ -220,7 +222,7 @@ pub fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A file or folder of the repository.
+/// Path of a file or folder of the repository, from its path below the root.
 pub fn of_repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }

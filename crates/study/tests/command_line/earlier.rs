@@ -1,4 +1,5 @@
-//! `--prior`: models of earlier trials, of the same ship, another one, and none.
+//! Tests of `--prior`: models of earlier trials of the same ship, of a scale model, of another ship, and without a
+//! hull.
 
 use serde_json::Value;
 use ship::angle::{from_deg, to_deg};
@@ -13,7 +14,7 @@ fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
     zig_zag_with_speed(SimulatedShip::from_ship(&ship), angle_deg, change_deg)
 }
 
-/// A zig-zag of a hull without noise, with its speed; a row every 4 s.
+/// CSV record of a zig-zag of a hull without noise, with its speed; a row every 4 s.
 pub fn zig_zag_with_speed(ship: SimulatedShip, angle_deg: f64, change_deg: f64) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(change_deg));
     let simulation = Simulation {
@@ -31,7 +32,7 @@ pub fn zig_zag_with_speed(ship: SimulatedShip, angle_deg: f64, change_deg: f64) 
     text
 }
 
-/// A desk with a fit of one zig-zag of KVLCC2, `f/fit.json`, and another one, `next.csv`.
+/// Folder with the fit of a 20/20 zig-zag of KVLCC2, `f/fit.json`, and the record of her 10/10, `next.csv`.
 fn with_model() -> Desk {
     let desk = Desk::new();
     desk.file("first.csv", record("kvlcc2", 20.0, 20.0));
@@ -48,8 +49,8 @@ fn sd(json: &Value, key: &str, name: &str) -> f64 {
     own.expect("a coefficient")[name].as_f64().expect("a number")
 }
 
-/// The same ship agrees, what is expected is firmer than without; one of another scale is widened more; the bias of the
-/// rudder is expected as ever.
+/// The records agree with a model of the same ship, which narrows the prior of the coefficients, except that of the
+/// rudder bias. For a ship of another length the standard deviations are multiplied by a larger factor.
 #[test]
 fn a_model_of_the_same_ship_is_what_is_expected() {
     let desk = with_model();
@@ -64,18 +65,18 @@ fn a_model_of_the_same_ship_is_what_is_expected() {
     assert!(sd(&after, "Nv", "expected_sd") < 0.8 * sd(&before, "Nv", "expected_sd"));
     assert_eq!(sd(&after, "delta_r", "expected_sd"), sd(&before, "delta_r", "expected_sd"));
     assert_ne!(sd(&after, "Nv", "expected"), sd(&before, "Nv", "expected"));
-    // A model of her, 7 m long, at another Froude number.
+    // A scale model of the ship, 7 m long, at another Froude number.
     let model = ["--length-m", "7", "--speed-m-s", "0.9", "--out", "h"];
     let run = desk.run(&[&fit[..6], &model].concat());
     assert!(run.is_done().out.contains("(a ship of another length, standard deviations × 2)"), "{}", run.out);
     assert!(run.err.contains("Froude number of 0.142, that of the records at 0.109"), "{}", run.err);
-    // The model of the second record holds the first one, too.
+    // The model of the second record contains the first record, too, as its prior.
     let both = ["fit", "first.csv", "--prior", "g/fit.json"];
     desk.run(&[&both[..], &KVLCC2].concat())
         .is_refused(2, &["g/fit.json: first.csv is in this model and in first.csv"]);
 }
 
-/// A trace takes the prior too, and its page and document say so.
+/// A trace uses the prior; its document, its page and the screen state it.
 #[test]
 fn a_trace_takes_a_prior() {
     let desk = with_model();
@@ -87,7 +88,7 @@ fn a_trace_takes_a_prior() {
     assert!(desk.text("t/report.md").contains("prior: f/fit.json"));
 }
 
-/// A model weighed together with earlier trials predicts nearly what one that was fitted with them does.
+/// A model updated with earlier trials predicts nearly the same as a model that was fitted with them as prior.
 #[test]
 fn a_prediction_takes_a_prior() {
     let desk = with_model();
@@ -123,7 +124,7 @@ fn a_prediction_takes_a_prior() {
         .is_refused(2, &["z/fit.json: it has no hull that --prior"]);
 }
 
-/// The Mariner is no KVLCC2: one warning, with the coefficients that moved.
+/// KVLCC2 as the prior of the Mariner gives one warning of a conflict, with the shifts of coefficients.
 #[test]
 fn another_ship_is_a_conflict() {
     let desk = with_model();

@@ -1,11 +1,11 @@
-//! Effects as lines of text: in a scenario, in a trace, in a prediction.
+//! Tests of effects given as formulas: in a scenario, in a trace and in a prediction.
 
 use crate::desk::Desk;
 use crate::scenarios::GOOD;
 
 const BANK: &str = "bank = c * tanh(k * psi)";
 
-/// A zig-zag of a ship beside a bank, simulated from a scenario.
+/// Simulates a zig-zag with the effect [`BANK`] and returns the path of the record.
 fn banked(desk: &Desk) -> String {
     let effect = format!("\n[[effect]]\nformula = \"{BANK}\"\nc = -0.05\nk = 8.0\n");
     desk.file("bank.toml", format!("{GOOD}{effect}"));
@@ -51,7 +51,7 @@ fn a_line_that_is_no_formula_is_marked() {
     desk.run(&["trace", "run.csv", "--effect", BANK, "--effect", BANK]).is_refused(2, &["bank", "names of their own"]);
 }
 
-/// The place is shown in the file, below its line.
+/// The message on an invalid formula has its line and column in the scenario file.
 #[test]
 fn a_formula_of_a_scenario_is_marked_in_the_file() {
     let desk = Desk::new();
@@ -90,7 +90,7 @@ fn a_formula_of_a_scenario_is_marked_in_the_file() {
     desk.run(&["check", "bad.toml"]).is_refused(2, &[&place, "`foo` is not a function"]);
 }
 
-/// Speed and sway of a response model are in its records, and formulas over them act.
+/// Records of a response model with speed and sway have both channels, and a formula of sway changes the motion.
 #[test]
 fn a_ship_with_speed_and_sway_has_moments_of_them() {
     let desk = Desk::new();

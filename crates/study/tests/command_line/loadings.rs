@@ -1,12 +1,12 @@
-//! `--load`: a ship that was tried in ballast only, predicted and corrected at full load.
+//! Tests of `--load`: a ship tried in ballast only, predicted and corrected at full load.
 //!
-//! Made up: her coefficients are what the formulas say at either draught, and one departure from them in both.
+//! The ship is synthetic: her coefficients are those of the formulas at each draught, plus the same departure at both.
 
 use std::sync::Arc;
 
 use document::identified_hull::{IdentifiedHull, keyed_particulars};
 use serde_json::{Value, json};
-use ship::vessel::prime::{HullCoefficient, HullForm, is_frictional, is_trial_specific};
+use ship::vessel::prime::{HullCoefficient, HullModel, is_frictional, is_trial_specific};
 use ship::vessel::prior::{HullParticulars, hull_prior};
 use ship::vessel::scaled::ScaledHull;
 use simulate::SimulatedShip;
@@ -19,7 +19,7 @@ const FULL: &str = "[form]\ndraught-m = 9.5\nblock-coefficient = 0.74\n";
 const TRIAL: &str = "--length-m 160 --speed-m-s 7.7 --beam-m 24 --draught-m 6.5 --block-coefficient 0.7 --rudder-area-m2 27 \
                      --rudder-height-m 5.5 --propeller-diameter-m 4.8";
 
-/// Words of the command line.
+/// Arguments of a command line, separated by blanks.
 fn words(text: &str) -> Vec<&str> {
     text.split_whitespace().collect()
 }
@@ -32,9 +32,9 @@ fn particulars(draught: f64, block_coefficient: f64) -> HullParticulars {
     HullParticulars { length: 160.0, speed: 7.7, rudder_height, propeller_diameter, ..form }
 }
 
-/// Values of her coefficients at a loading.
-fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
-    let [form, ballast] = [at, &particulars(6.5, 0.7)].map(|own| HullForm::mmg(&hull_prior(own).expect("a ship")));
+/// Hull by the formulas at a loading, and the true values of its coefficients.
+fn values(at: &HullParticulars) -> (HullModel, Vec<f64>) {
+    let [form, ballast] = [at, &particulars(6.5, 0.7)].map(|own| HullModel::mmg(&hull_prior(own).expect("a ship")));
     let departs = |(place, (own, trial)): (usize, (&HullCoefficient, f64))| {
         let is_ship = !is_frictional(own.key) && !is_trial_specific(own.key);
         own.mean + if is_ship { [0.5, -0.3, 0.4][place % 3] * trial } else { 0.0 }
@@ -44,7 +44,7 @@ fn values(at: &HullParticulars) -> (HullForm, Vec<f64>) {
     (form, values)
 }
 
-/// A zig-zag of the ship in ballast.
+/// CSV record of a zig-zag of the ship in ballast, the same angle for rudder and heading.
 fn record(angle_deg: f64) -> String {
     let (form, values) = values(&particulars(6.5, 0.7));
     let hull = form.with_coefficients(&values).expect("a ship");
@@ -52,7 +52,8 @@ fn record(angle_deg: f64) -> String {
     zig_zag_with_speed(SimulatedShip::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
 }
 
-/// A desk with a fit of a 20/20 in ballast, `f/fit.json`, the record, `run.csv`, and the loading, `full.toml`.
+/// Folder with the fit of a 20/20 and a 10/10 in ballast, `f/fit.json`, their records, `run.csv` and `other.csv`, and
+/// the loading, `full.toml`.
 fn with_trial() -> Desk {
     let desk = Desk::new();
     desk.file("full.toml", FULL);
@@ -63,7 +64,7 @@ fn with_trial() -> Desk {
     desk
 }
 
-/// What is known of the ship at full load without any doubt, `truth.json`: her fit with the hull that she has there.
+/// Writes `truth.json`: the fit with the true hull at full load, without uncertainty.
 fn truth(desk: &Desk) {
     let mut document = desk.json("f/fit.json");
     let ship = &mut document["ships"]["output-error"];
@@ -88,8 +89,9 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
-/// Nine of ten figures at full load, at least, lie in their intervals, and eight of ten nearer than those in ballast:
-/// the overshoot of her 20/20 is 17.0°, and in ballast 11.5°. Her trial is corrected to it.
+/// At full load at least nine of ten true figures lie in their predicted intervals, and at least eight of ten medians
+/// are nearer to the truth than those of the ballast model. The first overshoot of the 20/20 is 17.0° at full load and
+/// 11.5° in ballast; the measured overshoot is corrected to full load.
 #[test]
 fn a_ship_tried_in_ballast_is_predicted_at_full_load() {
     let desk = with_trial();

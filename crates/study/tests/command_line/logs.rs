@@ -1,11 +1,11 @@
-//! Logs as they are, to the answer: what is found in them, which part is used, what a person can say.
+//! Tests of logs: manoeuvres found and selected, inspection, fits of single logs, joined files, sidecars.
 
 use serde_json::Value;
 
 use crate::desk::{Desk, with_column, zig_zag_csv};
 use crate::schemas;
 
-/// Rows of time, heading and rudder: a straight piece, a zig-zag, twice, and a straight end.
+/// CSV log of time, heading and rudder: twice a straight leg and a zig-zag, then a straight leg.
 fn long_log() -> String {
     let rows: Vec<Vec<f64>> = zig_zag_csv()
         .lines()
@@ -45,7 +45,7 @@ fn the_zig_zag_of_a_log_is_found_and_asked_for_where_there_are_two() {
     desk.run(&["fit", "day.csv", "day.csv", "--trial", "1"]).is_refused(2, &["--trial is for one record"]);
 }
 
-/// Every channel with its source and steps; a sign that is turned is shown where a fit is refused.
+/// `study inspect` lists every channel with its source, and warns of a reversed rudder, which a fit refuses.
 #[test]
 fn a_log_is_inspected_before_anything_is_fitted() {
     let desk = Desk::new();
@@ -81,7 +81,7 @@ fn a_log_without_a_zig_zag_is_said_to_have_none() {
     assert!(run.is_done().err.contains("no zig-zag is recognised"), "{}", run.err);
 }
 
-/// Every log has its row, in the order of the command line, whether it has an answer or none.
+/// With `--each` every log has a row or a line of JSON, in the order of the command line, also without an estimate.
 #[test]
 fn every_log_is_fitted_alone_and_is_a_row() {
     let desk = Desk::new();
@@ -166,7 +166,7 @@ fn a_first_description_is_written_for_a_person_to_check() {
     desk.run(&["fit", "run.csv", "--method", "output-error"]).is_done();
 }
 
-/// A description is put in its place when it is whole, and a link is not followed to where nothing is.
+/// A sidecar is written completely or not at all; a symbolic link in its place is not followed.
 #[cfg(unix)]
 #[test]
 fn a_sidecar_is_written_whole_and_beside_its_table() {
@@ -176,7 +176,7 @@ fn a_sidecar_is_written_whole_and_beside_its_table() {
     desk.run(&["sidecar", "in/log.csv"]).is_refused(2, &["log.trial.toml", "there already"]);
     assert!(!desk.path("escaped.toml").exists());
     std::fs::remove_file(desk.path("in/log.trial.toml")).expect("it is there");
-    // No file may grow: what a full disk does.
+    // No file may grow, as on a full disk.
     let full = "trap '' XFSZ; ulimit -f 0; exec \"$0\" sidecar in/log.csv";
     let program = env!("CARGO_BIN_EXE_study");
     let mut shell = std::process::Command::new("sh");

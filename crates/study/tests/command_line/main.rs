@@ -1,5 +1,5 @@
-//! The command line as a user meets it: the built program on scenarios and records, good and bad. What is asserted is
-//! the exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
+//! Tests of the command line: the built program on valid and invalid scenarios and records. They check exit codes,
+//! messages and files; the numbers are tested in the crates that compute them.
 
 mod answers;
 mod benchmark;

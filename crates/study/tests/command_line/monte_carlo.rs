@@ -1,5 +1,4 @@
-//! Monte-Carlo studies as a user runs them: interrupted, continued, shared out and put together, always with the same
-//! rows.
+//! Tests of Monte-Carlo studies: interrupted, continued, or split into shards, they have the same rows.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -9,7 +8,7 @@ use campaign::rows::StudyRow;
 use crate::desk::{Desk, copy, interrupted};
 use crate::scored::rows;
 
-/// A study of some seconds in two cells.
+/// Scenario of two cells with `replicates` trials each.
 fn scenario(replicates: u32) -> String {
     format!(
         r#"question = "How precise is the output error?"
@@ -31,10 +30,10 @@ method.integral-least-squares = {{}}
     )
 }
 
-/// The blocks of a folder with their bytes.
+/// Bytes of every block in a folder, by file name.
 pub fn blocks(desk: &Desk, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let files = std::fs::read_dir(desk.path(folder).join("rows")).into_iter().flatten().flatten();
-    // What a killed program had under way has a name that begins with a dot.
+    // Unfinished files of a killed program have names that begin with a dot.
     let blocks = files.filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
     let file =
         |entry: std::fs::DirEntry| (entry.file_name().to_string_lossy().into_owned(), std::fs::read(entry.path()));
@@ -57,7 +56,7 @@ fn a_run_that_is_killed_again_and_again_ends_with_the_same_bytes() {
     for round in 0..20_u64 {
         let threads = ["1", "2", "3"][round as usize % 3];
         let mut run = desk.start(&["study.toml", "--out", "killed", "--quiet", "--threads", threads]);
-        // Wherever that falls: before the first block, within one, or while one is written.
+        // The kill may fall before the first block, within a block or into its writing.
         std::thread::sleep(Duration::from_millis(10 + 37 * round % 150));
         run.kill().expect("it is ours to kill");
         run.wait().expect("it ends");
@@ -68,7 +67,8 @@ fn a_run_that_is_killed_again_and_again_ends_with_the_same_bytes() {
     assert!(whole == blocks(&desk, "killed"), "the rows differ from those of an uninterrupted run");
 }
 
-/// Three hundred blocks, each cut, flipped at some place, or gone.
+/// Three hundred blocks, each cut short, with a flipped bit, or filled with zeros from some byte on, are computed
+/// again.
 #[test]
 fn damaged_blocks_are_computed_again() {
     let desk = Desk::new();
@@ -121,7 +121,7 @@ fn shards_in_any_order_and_folder_are_the_whole() {
         runs.into_iter().for_each(|mut run| assert!(run.wait().expect("it ends").success()));
     }
     desk.run(&["report", "shared", "--quiet"]).is_done();
-    // Three in folders of their own, copied into one; a fourth has no block of this study.
+    // Three shards in separate folders, copied into a common folder.
     for (shard, out) in [("2/3", "b"), ("1/3", "a"), ("3/3", "c")] {
         desk.run(&["study.toml", "--quiet", "--shard", shard, "--out", out]).is_done();
     }
@@ -170,7 +170,7 @@ fn a_folder_belongs_to_one_study() {
     again("study.toml", &["--seed", "4"]).is_refused(2, &["seed: 3 there, 4 here"]);
     assert!(rows == blocks(&desk, "whole"), "a refusal changes nothing");
 
-    // Prose and layout are not part of a study; the report follows them, the rows stay.
+    // A change of prose or layout changes the report and keeps the rows.
     let told = scenario(20).replace("seed = 3", "# why three\nseed = 3\nanalysis = \"It is precise.\"");
     desk.file("told.toml", told);
     again("told.toml", &[]).is_done();
@@ -181,7 +181,8 @@ fn a_folder_belongs_to_one_study() {
     assert!(rows != blocks(&desk, "whole"));
 }
 
-/// Rows of another program are kept as long as nothing is missing, and never joined by new ones.
+/// Rows are refused if they are of another version of the program, have no manifest, or are in the format of earlier
+/// versions.
 #[test]
 fn a_folder_belongs_to_one_program() {
     let desk = Desk::new();
@@ -197,7 +198,7 @@ fn a_folder_belongs_to_one_program() {
     desk.run(&["study.toml", "--out", "whole"]).is_refused(2, &["unknown study", "without manifest.toml", "--restart"]);
     desk.run(&["study.toml", "--out", "whole", "--restart", "--quiet"]).is_done();
     assert!(rows == blocks(&desk, "whole"));
-    // What versions before stored in one file.
+    // Earlier versions stored all rows in a single file.
     desk.file("old/rows.parquet", "rows");
     desk.file("old/manifest.toml", manifest);
     let old = ["old/rows.parquet", "by an earlier version", "remove the folder"];
@@ -214,7 +215,7 @@ fn a_manifest_repeats_its_study() {
     assert!(blocks(&desk, "whole") == blocks(&desk, "again"));
 }
 
-/// Trials of every cell and method of a summary, in its order.
+/// Number of trials of every cell and method, in the order of `summary.csv`.
 fn trials(desk: &Desk, folder: &str) -> Vec<u64> {
     let file = desk.path(folder).join("summary.csv");
     let mut summary = csv::Reader::from_path(file).expect("there is a summary");
@@ -242,7 +243,7 @@ fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
     }
     desk.run(&["report", "results/study", "--quiet"]).is_done();
     assert!(whole == blocks(&desk, "results/study"));
-    // A rule that is never met runs every trial there is.
+    // If the rule is never met, every trial runs.
     desk.file("never.toml", scenario(100) + &rule.replace("0.015", "1e-9"));
     desk.run(&["never.toml", "--out", "never", "--quiet"]).is_done();
     assert_eq!(trials(&desk, "never"), [100; 4]);
@@ -307,7 +308,7 @@ fn figures_for_print_have_the_size_that_was_asked_for() {
     let desk = Desk::new();
     desk.file("study.toml", scenario(5));
     desk.run(&["study.toml", "--out", "whole", "--quiet", "--paper", "85", "--dpi", "300"]).is_done();
-    // Width and physical resolution of a PNG: in IHDR and pHYs.
+    // Width of a PNG, pixels, in its chunk IHDR.
     let pixels = |name: &str| {
         let png = desk.bytes(name);
         u32::from_be_bytes(png[16..20].try_into().expect("four bytes"))

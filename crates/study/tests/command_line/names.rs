@@ -1,5 +1,5 @@
-//! Names, labels and options that no folder, figure or page can carry are refused before anything runs; what is shown
-//! of the input cannot act on a terminal.
+//! Tests of names, labels and options: those that no folder, figure or page can hold are refused before any trial runs,
+//! and control characters of the input do not reach the terminal.
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
 
@@ -120,7 +120,7 @@ fn a_page_that_cannot_be_printed_is_refused_before_the_trials() {
     assert!(!desk.path("results").exists());
 }
 
-/// Letters that a file name of a figure does not show must not make one figure of two.
+/// Records have separate figures even if their names differ only in letters that file names of figures leave out.
 #[test]
 fn records_in_any_script_have_figures_of_their_own() {
     let desk = Desk::new();

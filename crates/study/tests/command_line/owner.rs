@@ -1,4 +1,4 @@
-//! What an owner and a statistician take home: ship, date and draughts on the first page, and draws of the answer.
+//! Tests of ship, date and draughts on the first page of a report, and of draws of the estimates as a file.
 
 use parquet::record::Field;
 
@@ -6,7 +6,8 @@ use crate::desk::{Desk, number, zig_zag_csv};
 
 const FIT: [&str; 5] = ["fit", "run.csv", "--method", "output-error", "--quiet"];
 
-/// From the sidecar, from options, which go before it, and the day from the stamps of a record.
+/// Particulars come from the sidecar and from options, which override it; without a date there the day is that of the
+/// time stamps.
 #[test]
 fn a_report_begins_with_ship_day_and_draughts() {
     let desk = Desk::new();
@@ -47,8 +48,7 @@ fn a_report_begins_with_ship_day_and_draughts() {
     assert_eq!(*of_stamps, serde_json::json!({ "date": "2026-11-20" }));
 }
 
-/// A fixed schema; the same for the same seed, whatever else is asked; the mean and the scatter are those of the
-/// answer.
+/// The draws depend on the seed alone; their means and standard deviations are those of the estimate.
 #[test]
 fn draws_of_an_answer_are_a_table_on_request() {
     let desk = Desk::new();

@@ -1,4 +1,5 @@
-//! Pages for a browser: beside every report.md, in one file that needs no other, with all of its figures.
+//! Tests of `report.html`: a single file next to every `report.md`, with all its figures and without external
+//! resources.
 
 use report::number::MISSING;
 
@@ -6,7 +7,7 @@ use crate::desk::{Desk, zig_zag_csv, zig_zag_csv_of};
 use crate::scenarios::GOOD;
 use crate::traces::second_order;
 
-/// The page of a folder, which has every figure of the Markdown beside it.
+/// Text of the `report.html` of a folder. Panics if it lacks a figure of `report.md`, is too large or loads a resource.
 fn page(desk: &Desk, folder: &str) -> String {
     let read = |name: &str| desk.text(&format!("{folder}/{name}"));
     let (markdown, page) = (read("report.md"), read("report.html"));
@@ -15,7 +16,7 @@ fn page(desk: &Desk, folder: &str) -> String {
     for resource in ["src=\"http", "src=\"/", "@import", "<link", "<iframe", "xlink"] {
         assert!(!page.contains(resource), "{folder}: {resource}");
     }
-    // A figure names parts of its own.
+    // References in a figure begin with the number of its caption, so those of two figures differ.
     assert_eq!(page.matches("url(").count(), page.matches("url(#caption-").count(), "{folder}");
     page
 }
@@ -58,16 +59,16 @@ fn limits_of_an_axis_that_no_figure_has_are_refused() {
         .is_refused(2, &["[limits] \"residual\"", "no figure of this page has an axis", "\"residual [°]\""]);
 }
 
-/// Words of a text that are identifiers: letters joined by `_`, which no reader should meet.
+/// Identifiers in a text: words with `_`, which pages and figures must not show.
 fn identifiers(text: &str) -> Vec<&str> {
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
-    // One letter before the stroke is a symbol with its index.
+    // A single letter before `_` is a symbol with its index.
     words
         .filter(|word| word.split_once('_').is_some_and(|(head, tail)| head.chars().count() > 1 && !tail.is_empty()))
         .collect()
 }
 
-/// What stands between the marks of a text.
+/// Parts of a text outside the pairs of the marks `open` and `close`.
 fn outside<'a>(text: &'a str, [open, close]: [&str; 2]) -> impl Iterator<Item = &'a str> {
     text.split(open).enumerate().map(move |(number, part)| match number {
         0 => part,
@@ -90,7 +91,7 @@ fn no_page_and_no_figure_holds_an_identifier() {
     for folder in ["f", "t", "p", "s"] {
         let markdown = desk.text(&format!("{folder}/report.md")).replace('\\', "");
         let prose: String = outside(&markdown, ["](", ")"]).collect();
-        // Under every figure stands what it shows, with its numbers.
+        // Every caption begins with the finding of its figure, which has a number or says that there is none.
         for caption in markdown.lines().filter(|line| line.starts_with("*Figure ")) {
             let finding = caption.split_once(". ").expect("its number").1;
             let is_found = |word: &str| finding.starts_with(word);
@@ -102,9 +103,9 @@ fn no_page_and_no_figure_holds_an_identifier() {
                 "{folder}: {caption}"
             );
         }
-        // Files are called as their user calls them.
+        // Names of files may hold `_`.
         let prose = prose.replace("zigzag_20_10_s.csv", "").replace("zigzag_10_10_p.csv", "");
-        // Every second part stands in code.
+        // Every second part is code, between backquotes.
         let prose: Vec<&str> = prose.split('`').step_by(2).collect();
         assert_eq!(identifiers(&prose.concat()), Vec::<&str>::new(), "{folder}/report.md");
         for file in std::fs::read_dir(desk.path(folder)).expect("a folder").flatten().map(|file| file.path()) {

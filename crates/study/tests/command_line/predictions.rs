@@ -1,4 +1,4 @@
-//! Predictions: `study predict` on what `fit` and `trace` leave.
+//! Tests of `study predict` on documents of `study fit` and `study trace`.
 
 use parquet::record::Field;
 use serde_json::Value;
@@ -9,8 +9,8 @@ fn record(name: &str) -> String {
     of_repository(&format!("scenarios/records/{name}.csv")).to_string_lossy().into_owned()
 }
 
-/// A desk with the answer of every method on the record of a first-order ship, and that record with a sidecar,
-/// `run.csv`.
+/// Folder with a fit of the record of a first-order ship by the usual methods, `f/fit.json`, and the record with a
+/// sidecar, `run.csv`.
 fn with_fit() -> Desk {
     let desk = Desk::new();
     desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
@@ -24,7 +24,7 @@ fn predict(desk: &Desk, words: &str) -> Run {
     desk.run(&["predict"].into_iter().chain(words.split(' ')).collect::<Vec<_>>())
 }
 
-/// Another ship than that of the fit.
+/// Writes the file `name`: `f/fit.json` with every ship changed.
 fn changed(desk: &Desk, name: &str, change: impl Fn(&mut Value)) {
     let mut json = desk.json("f/fit.json");
     json["ships"].as_object_mut().expect("ships").values_mut().for_each(change);
@@ -36,7 +36,8 @@ fn figure<'a>(json: &'a Value, kind: &str, name: &str) -> &'a Value {
     &own.unwrap_or_else(|| panic!("{kind}: {json}"))["figures"][name]
 }
 
-/// What the contract says beyond the schema, to which every run of these tests is held.
+/// Asserts properties of a prediction that its schema does not state: sums of weights and shares, order of medians and
+/// interval ends, ranges of probabilities.
 fn keeps_the_contract(json: &Value) {
     assert_eq!(json["schema"], "predict/2");
     let weights: f64 =
@@ -68,7 +69,7 @@ fn criteria(json: &Value) -> Vec<&str> {
     json["imo"].as_array().into_iter().flatten().filter_map(|one| one["criterion"].as_str()).collect()
 }
 
-/// The first overshoot of the ship of that record is 6.82 deg in a 10/10, and the limit of 75 m at 6.2 m/s 11.0 deg.
+/// In a 10/10 the first overshoot of the ship is 6.82°; the IMO limit for 75 m at 6.2 m/s is 11.0°.
 #[test]
 fn a_fit_tells_the_trials_of_the_imo() {
     let desk = with_fit();
@@ -85,7 +86,7 @@ fn a_fit_tells_the_trials_of_the_imo() {
     for file in ["report.md", "zig-zag-10-10.png", "zig-zag-10-10.csv", "imo-overshoots.svg", "turning-circle-35.png"] {
         assert!(!desk.bytes(&format!("p/{file}")).is_empty(), "{file}");
     }
-    // The same again, to the byte; another format is a table alone.
+    // A repeated prediction has the same bytes; with `--format csv` standard output is a table alone.
     let again = predict(&desk, "f/fit.json --out q --draws 200 --threads 1 --format csv");
     assert!(again.is_done().out.starts_with("manoeuvre,figure"), "{}", again.out);
     assert_eq!(desk.bytes("p/predict.json"), desk.bytes("q/predict.json"));
@@ -114,7 +115,7 @@ fn a_trace_predicts_and_its_own_record_is_inside() {
     assert!((measured - median).abs() < 0.5, "{overshoot}");
 }
 
-/// Two files are a mixture of one ship; a calm has no process noise; another length is scaled by Froude.
+/// Several models are mixed, `--calm` removes the random moment, and `--length-m` scales by Froude's law.
 #[test]
 fn models_are_mixed_calmed_and_scaled() {
     let desk = with_fit();
@@ -141,7 +142,8 @@ fn models_are_mixed_calmed_and_scaled() {
     assert_eq!((&json["length_m"], &json["speed_m_s"]), (&300.0.into(), &1.2.into()));
 }
 
-/// A record with four executes has the one cycle of the transient, and so has what is predicted for it.
+/// The period of a record with four executes is that of its only cycle, from execute 2 to execute 4, measured and
+/// predicted.
 #[test]
 fn a_period_is_of_the_cycles_of_the_record() {
     let desk = with_fit();
@@ -156,8 +158,9 @@ fn a_period_is_of_the_cycles_of_the_record() {
     }
 }
 
-/// The ship of the sidecar, 105 m long, is the scale of all that is predicted. A circle with 10° of rudder answers none
-/// of the criteria, which are of no ship of 75 m.
+/// The ship of the replayed record or of the sidecar, 105 m long, sets the scale of the prediction; options override
+/// it. No IMO criterion applies to a circle with 10° of rudder. For a ship of 75 m the page states that the criteria
+/// are for ships of 100 m and above.
 #[test]
 fn the_ship_of_the_record_is_the_scale() {
     let desk = with_fit();
@@ -185,7 +188,7 @@ fn the_ship_of_the_record_is_the_scale() {
     predict(&desk, &both).is_refused(2, &["run.csv: its ship is 75.00 m long", "105.00 m long", "give --length-m"]);
 }
 
-/// A ship whose rudder is off by 20 deg makes no 10/10, but a circle.
+/// A ship with a rudder bias of 20° completes no 10/10, but a turning circle.
 #[test]
 fn a_manoeuvre_that_the_model_cannot_make_is_left_out() {
     let desk = with_fit();
@@ -205,7 +208,7 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     refused("f/fit.json --method magic", &["--method magic", "output-error"]);
     refused("f/fit.json --manoeuvre circle:35", &["circle:35", "turning-circle:RUDDER"]);
     refused("f/fit.json --draws 3", &["--draws"]);
-    // What knows of no draught, and fits no part of a record, does not ask for one.
+    // `study predict` has no option for a draught or for a part of a record.
     refused("f/fit.json --draught-m 8", &["--draught-m"]);
     refused("f/fit.json --replay x.csv --from 10", &["--from"]);
     desk.file("text.json", "not json");
@@ -219,13 +222,13 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     let text = desk.text("f/fit.json");
     desk.file("broken.json", text.replace("\"fitted\"", "\"fited\""));
     refused("broken.json", &["broken.json", "fitted"]);
-    // Without the sidecar beside it nobody knows how long the ship is.
+    // Without a sidecar the length of the ship is unknown.
     desk.file("plain.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
     desk.run(&["fit", "plain.csv", "--out", "g", "--quiet"]).is_done();
     refused("g/fit.json --length-m 300", &["length and speed", "give them to `study fit` or `study trace`"]);
 }
 
-/// The ship of a fit at another load: a share of her damping in yaw and of her gain; no chance in yaw.
+/// Writes the file `name`: the fit of a ship at another loading, with 1/T times `damping` and K/T times `gain`.
 fn at_another_load(desk: &Desk, name: &str, [damping, gain]: [f64; 2]) {
     changed(desk, name, |ship| {
         let parameters = &mut ship["members"][0]["parameters"];
@@ -241,12 +244,13 @@ fn entry<'a>(json: &'a Value, field: &str, side: &str) -> &'a Value {
     form.iter().find(is_it).unwrap_or_else(|| panic!("{field} {side}: {json}"))
 }
 
-/// What is declared of the ship of that record.
+/// Sidecar of the record `run.csv`.
 const DECLARED: &str = "[ship]\nlength-m = 75.0\nspeed-m-s = 6.2\n[form]\nship-type = \"training | ship\"\nbeam-m = 12.5\n\
                         draught-m = 5.0\nfull-load-draught-m = 5.0\nrudder-area-m2 = 7.5\nwater-depth-m = 15.0\n\
                         wind-beaufort = 6\nsea-state = 3\n";
 
-/// A 10/10 to starboard is measured, the other side predicted; the 20/20 is beyond what the ship was seen at.
+/// The 10/10 to starboard is measured, that to port predicted; the 20/20 is extrapolated beyond the rudder of the
+/// record.
 #[test]
 fn the_form_of_the_circular_names_the_source_of_every_entry() {
     let desk = with_fit();
@@ -259,14 +263,14 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     assert!((first["value"].as_f64().expect("measured") - 6.82).abs() < 0.1, "{first}");
     assert!(first["source"].as_str().is_some_and(|source| source.starts_with("measured, run.csv ± ")), "{first}");
     let told = entry(&json, "1st overshoot angle", "port");
-    // Her rudder is off amidships, so her sides differ.
+    // The ship has a rudder bias, so her overshoots to both sides differ.
     let port = told["median"].as_f64().expect("predicted");
     assert!((5.5..6.5).contains(&port), "{told}");
     let source = told["source"].as_str().unwrap_or_default();
     assert!(source.starts_with("predicted from fit.json, 90 % [") && !source.contains("extrapolated"), "{source}");
     let twenty = json["form"].as_array().expect("a list").iter().find(|one| one["limit"] == 25.0).expect("20/20");
     assert_eq!(twenty["extrapolated"], true);
-    // Ratios are of the scale of the sidecar.
+    // Ratios are those of the ship of the sidecar.
     assert_eq!(entry(&json, "L/B", "")["value"], 6.0);
     assert_eq!(entry(&json, "total rudder area/LT", "")["value"], 0.02);
     assert_eq!(entry(&json, "water depth/trial draught", "")["value"], 3.0);
@@ -285,7 +289,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     }
     let widths = |line: &str| line.replace("\\|", "").matches('|').count();
     assert!(page.lines().filter(|line| line.starts_with("| zig-zag")).all(|line| widths(line) == 8), "{page}");
-    // Without a record, words come with --columns; without these, nobody knows the ship.
+    // Without a record the declared entries come from --columns; without --form there is no form.
     predict(&desk, "f/fit.json --form --draws 50 --columns run.trial.toml --out q").is_done();
     let json = desk.json("q/predict.json");
     assert_eq!(entry(&json, "ship type", "")["source"], "declared with run.trial.toml");
@@ -294,7 +298,7 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     assert!(desk.json("r/predict.json").get("form").is_none() && !desk.path("r/trial-form.md").exists());
 }
 
-/// The record is that of the ship in ballast; at full load she has less damping, and her overshoots are larger.
+/// The record is of the ship in ballast; at full load she has less damping and larger overshoots.
 #[test]
 fn a_trial_in_ballast_is_corrected_to_full_load() {
     let desk = with_fit();
@@ -317,11 +321,11 @@ fn a_trial_in_ballast_is_corrected_to_full_load() {
     let source = first["source"].as_str().unwrap_or_default();
     assert!(source.starts_with("measured at partial load, run.csv, and corrected by F/B = 1."), "{source}");
     assert_eq!(entry(&json, "loading condition", "")["value"], "tested at partial load and corrected");
-    // The replay is that of the ship as she was tried.
+    // The record is replayed with the model in ballast.
     assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);
     let page = desk.text("p/report.md");
     assert!(page.contains("## Corrected to full load") && page.contains("trial-form.md"), "{page}");
-    // F = B corrects nothing.
+    // With F = B the factor is exactly 1.
     predict(&desk, "f/fit.json --ballast f/fit.json --replay run.csv --out s --draws 200").is_done();
     let same = &desk.json("s/predict.json")["corrected"][0]["figures"]["first_overshoot_deg"];
     assert_eq!((&same["factor"]["median"], &same["factor"]["ci90"]), (&1.0.into(), &serde_json::json!([1.0, 1.0])));
@@ -343,7 +347,8 @@ fn a_correction_without_its_trial_is_refused_and_unlike_models_are_told() {
     }
 }
 
-/// The limits are those of the ship, and what her model measured has no dimension.
+/// The record of a scale model is replayed at the scale of the model; the form has the limits of the ship and lengths
+/// in ship lengths.
 #[test]
 fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     let desk = with_fit();
@@ -360,7 +365,7 @@ fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     assert!((measured / told - 1.0).abs() < 0.15, "{measured} {told}");
 }
 
-/// Every drawn ship is a row: what she is, and what she did. The rows make the medians of the document.
+/// `draws.parquet` has a row with parameters and figures of every drawn ship; their medians are those of the document.
 #[test]
 fn the_drawn_ships_are_a_table_on_request() {
     let desk = with_fit();

@@ -1,4 +1,5 @@
-//! Particulars of a ship: as options, in a sidecar, in a scenario, and what they say of the coefficients of her hull.
+//! Tests of the particulars of a ship as options, in a sidecar and in a scenario, and of the priors of hull
+//! coefficients that they determine.
 
 use serde_json::Value;
 
@@ -26,7 +27,7 @@ fn of<'a>(list: &'a Value, key: &str) -> Option<&'a Value> {
     list["entries"].as_array().expect("a list").iter().find(|entry| entry["key"] == key)
 }
 
-/// Y_v of KVLCC2 by Kijima (1990) is −0.410, published −0.315.
+/// Y_v′ of KVLCC2 is −0.410 by the formula of Kijima (1990); the published value is −0.315.
 #[test]
 fn particulars_tell_priors_and_a_missing_one_widens_them() {
     let desk = Desk::new();
@@ -47,7 +48,7 @@ fn particulars_tell_priors_and_a_missing_one_widens_them() {
     }
 }
 
-/// A sidecar says the same; an option goes before it.
+/// A sidecar gives the same priors as options; an option overrides it.
 #[test]
 fn a_sidecar_tells_the_particulars() {
     let desk = Desk::new();

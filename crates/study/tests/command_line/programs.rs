@@ -1,4 +1,5 @@
-//! What programs see: one JSON document on standard output, a record on standard input, tables of numbers.
+//! Tests of input and output for programs: a JSON document on standard output, a record on standard input, tables of
+//! numbers, exit codes.
 
 use std::io::Write;
 use std::process::Stdio;
@@ -8,7 +9,7 @@ use serde_json::Value;
 use crate::desk::{Desk, interrupted, of_repository, with_column, zig_zag_csv};
 use crate::schemas;
 
-/// The one document on standard output, which `--quiet` does not silence.
+/// JSON document on standard output, printed also with `--quiet`. Panics if there is any other output.
 fn document(desk: &Desk, arguments: &[&str]) -> Value {
     let run = desk.run(&[arguments, &["--format", "json", "--quiet"]].concat());
     assert_eq!(run.is_done().err, "", "{arguments:?}");
@@ -88,7 +89,8 @@ method.integral-least-squares = {}
     );
 }
 
-/// The one object on standard error.
+/// Entry `error` of the JSON document on standard error. Panics if the document violates its schema or has another exit
+/// code.
 fn error(desk: &Desk, arguments: &[&str]) -> Value {
     let run = desk.run(&[arguments, &["--format", "json", "--quiet"]].concat());
     let document: Value = serde_json::from_str(&run.err).unwrap_or_else(|fault| panic!("{fault}: {}", run.err));
@@ -123,20 +125,20 @@ fn what_goes_wrong_is_an_object_for_programs() {
     assert_eq!(sidecar["code"], "sidecar");
     let full = error(&desk, &["doctor", "--out", "bad.csv"]);
     assert!(full["message"].as_str().expect("words").contains("bad.csv") && full["code"] == "work", "{full}");
-    // Options, too: what is wrong without how the command is used.
+    // The message on a wrong option has no usage text.
     let option = error(&desk, &["fit", "bad.csv", "--draws", "1"]);
     assert!(option["problem"].as_str().expect("words").contains("--draws"), "{option}");
     assert_eq!(option["code"], "usage");
     assert!(!option["message"].as_str().expect("words").contains("Usage"), "{option}");
     let command = error(&desk, &["fti"]);
     assert!(command["problem"].as_str().expect("words").contains("no command `fti`"), "{command}");
-    // In words it stays what it was.
+    // Without --format json a failure is text.
     desk.run(&["fit", "none.csv"]).is_refused(2, &["none.csv"]);
     desk.run(&["check", "bad.toml", "--format", "text"]).is_refused(2, &["seed"]);
     desk.run(&["fit", "bad.csv", "--replicates", "1"]).is_refused(2, &["--replicates", "Usage: study fit"]);
 }
 
-/// A command that waits for the rest of its input ends by Ctrl-C, with the exit code that shells give.
+/// A command that waits for more input ends on Ctrl-C with the exit code 130, as in shells.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_is_exit_code_130_in_every_command() {
@@ -147,14 +149,14 @@ fn ctrl_c_is_exit_code_130_in_every_command() {
         let mut child = desk.command(&[command, "-"]);
         let mut run = child.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
         let mut input = run.stdin.take().expect("it is piped");
-        // More than a pipe holds: when all is written, some has been read.
+        // The input is larger than a pipe: when all is written, the program has read some of it.
         input.write_all(table.as_bytes()).expect("it reads");
         let (run, _) = interrupted(run);
         assert_eq!((run.code, run.err.as_str()), (Some(130), ""), "{command}");
     }
 }
 
-/// Quiet is about people: notes and warnings go, and so does the table, unless a form of it was requested.
+/// `--quiet` silences notes, warnings and the table, but not the output that `--format` requests.
 #[test]
 fn quiet_silences_all_but_what_was_asked_for() {
     let desk = Desk::new();
@@ -261,7 +263,7 @@ fn a_doctor_who_cannot_write_says_so() {
     assert!(desk.run(&["--version"]).is_done().out.starts_with(concat!("study ", env!("CARGO_PKG_VERSION"))));
 }
 
-/// Colours are for terminals: what is piped has none, whatever the environment asks for.
+/// Output to a pipe has no colours, which are for terminals.
 #[test]
 fn what_is_piped_has_no_colours() {
     let desk = Desk::new();

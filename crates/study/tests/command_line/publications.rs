@@ -1,4 +1,4 @@
-//! What is published of the repository: it belongs to the scenarios, and the page over it is what the script makes.
+//! Tests of the published results: they belong to the scenarios, and the page over them is that of the script.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use crate::desk::{Desk, of_repository};
 
-/// Published results are those of the scenarios, in the same words.
+/// The manifest of every published study holds the present text of its scenario.
 #[test]
 fn published_results_belong_to_the_scenarios() {
     let results = of_repository("results");
@@ -26,7 +26,7 @@ fn published_results_belong_to_the_scenarios() {
     }
 }
 
-/// `results/publish.py`, which publishes, makes the page over all that is there.
+/// `results/README.md` is the page that `results/publish.py --page` makes.
 #[test]
 fn the_page_over_published_results_is_that_of_the_script() {
     let desk = Desk::new();
@@ -43,8 +43,8 @@ fn the_page_over_published_results_is_that_of_the_script() {
     assert!(fs::read(page).expect("it was made") == stored, "run `python3 results/publish.py --page`");
 }
 
-/// The rows of a published study are not stored; its manifest is a scenario of this version that makes them. Studies of
-/// measured records need their folder.
+/// The rows of a published study are not stored; its manifest is a valid scenario from which they can be computed.
+/// Studies of measured records are left out, because they need the folder of records.
 #[test]
 fn manifests_of_published_studies_can_be_run() {
     let desk = Desk::new();
@@ -57,7 +57,8 @@ fn manifests_of_published_studies_can_be_run() {
     }
 }
 
-/// What each folder of the published results says of the program that made it.
+/// Name of every folder of published results, and the entries on the program that made it: `manifest.toml`, else the
+/// table in `program.toml`; empty without either.
 fn programs() -> Vec<(String, Table)> {
     let published = of_repository("results/published");
     let program = |name: &String| {
@@ -69,7 +70,7 @@ fn programs() -> Vec<(String, Table)> {
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 
-/// Every folder was made by one revision, whose source is in the repository.
+/// All folders were made by the same revision, without uncommitted changes.
 #[test]
 fn published_results_are_of_one_revision() {
     let programs = programs();
@@ -86,7 +87,7 @@ fn published_results_are_of_one_revision() {
     assert!(others.is_empty(), "not made by one clean revision, {first:?}; run `results/publish.py`: {others:?}");
 }
 
-/// A clone is small.
+/// The published results are at most 10.2 MB, so a clone stays small.
 #[test]
 fn published_results_have_little_more_than_ten_megabytes() {
     let root = of_repository("");

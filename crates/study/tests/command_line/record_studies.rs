@@ -1,4 +1,4 @@
-//! Studies of measured records: `[records]` in the place of a simulated ship.
+//! Tests of studies of measured records: `[records]` in place of a simulated ship.
 
 use crate::desk::{Desk, zig_zag_csv};
 
@@ -15,7 +15,7 @@ method.output-error = {}
 method.least-squares = {}
 "#;
 
-/// A folder of three logs of one ship and one of something else.
+/// Folder with three logs of a ship, a table that is no record, and the scenario of the logs, `fleet.toml`.
 fn desk() -> Desk {
     let desk = Desk::new();
     desk.file("zz.toml", crate::scenarios::GOOD.replace("replicates = 2", "replicates = 3"));
@@ -41,17 +41,17 @@ fn every_record_is_fitted_and_judged_by_the_others() {
     let least_squares: Vec<&str> = summary.lines().last().expect("two methods").split(',').collect();
     assert!(summary.contains("output-error,3,0,") && [3, 6, 9, 12].iter().all(|place| least_squares[*place] > "0"));
     assert!(desk.text("out/report.md").contains("judged.png") && desk.path("out/judged.png").exists());
-    // The same rows on any number of threads, in shards, and when it is told again.
+    // The rows are the same with any number of threads and as a shard.
     let rows = |folder: &str| desk.bytes(&format!("{folder}/rows/0000-0000.parquet"));
     desk.run(&["fleet.toml", "--out", "one", "--threads", "1", "--quiet"]).is_done();
     desk.run(&["fleet.toml", "--out", "shard", "--shard", "1/1", "--quiet"]).is_done();
     assert!(rows("out") == rows("one") && rows("out") == rows("shard"));
-    // A record that was changed makes another study.
+    // A study with a changed record is another study.
     desk.file("logs/zz_1.csv", zig_zag_csv());
     desk.run(&["fleet.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
 }
 
-/// A sidecar beside a record decides its rows; what it leaves to be decided is told once.
+/// A sidecar next to a record applies to it; a warning about the record is printed once.
 #[test]
 fn a_record_has_a_sidecar_beside_it() {
     let desk = desk();
@@ -65,7 +65,7 @@ fn a_record_has_a_sidecar_beside_it() {
     assert_ne!(whole.0, run("[part]\nuntil-s = 90.0\n").0);
     desk.file("logs/zz_1.trial.toml", "");
     desk.run(&["fleet.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
-    // The rudder against its sign is implausible, and said to be right.
+    // A reversed rudder is implausible; the sidecar switches the check off.
     assert_eq!(run("[check]\nplausibility = false\n[[column]]\nname = \"rudder_deg\"\nflip = true\n").1, 1);
 }
 
@@ -91,8 +91,9 @@ fn records_are_left_out_listed_or_fitted_alone() {
     assert!(!desk.path("out/judged.png").exists());
 }
 
-/// Sidecars of a folder, or one for each entry of the files, say the ship of each record. On a ship of another length
-/// nothing is replayed, and its figures are predicted at its scale: of twice the length and speed they are the same.
+/// Sidecars from a folder, or from one folder for each entry of `files`, declare the ship of each record. A record of a
+/// ship of another length is not replayed; its figures are predicted at its scale. At twice the length and speed they
+/// are the same.
 #[test]
 fn a_record_of_another_scale_is_predicted_at_its_scale() {
     let desk = desk();
@@ -118,7 +119,7 @@ fn a_record_of_another_scale_is_predicted_at_its_scale() {
     desk.run(&["check", "wrong.toml"]).is_refused(2, &["2 sidecars", "expected one for each entry of `files`"]);
 }
 
-/// Answers of another program to measured records stand beside the methods.
+/// Answers of another program to measured records are scored as a further method.
 #[test]
 fn answers_to_measured_records_are_scored() {
     let desk = desk();

@@ -1,4 +1,4 @@
-//! Records, good and bad: `study fit`.
+//! Tests of `study fit` on valid and invalid records.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
@@ -37,7 +37,7 @@ fn a_record_that_contradicts_itself_is_refused_with_the_cure() {
     refused(with_column(&good, "rudder_deg", |_, delta| (1e300 * delta).to_string()), &["`rudder_deg` reaches 1e301"]);
 }
 
-/// A result is made anew of the same file or the same content, and of nothing else.
+/// A result is replaced only by the result of a record with the same file name or the same content.
 #[test]
 fn the_result_of_another_record_is_kept() {
     let desk = Desk::new();
@@ -53,7 +53,7 @@ fn the_result_of_another_record_is_kept() {
     fit("b/trial.csv").is_done();
 }
 
-/// A heading that the rudder does not explain: there is a verdict, which is that there are no K and T.
+/// If the rudder does not explain the heading, the verdict has no K and T, and a prediction has a warning.
 #[test]
 fn no_answer_is_taken_from_a_heading_that_the_rudder_does_not_explain() {
     let desk = Desk::new();
@@ -81,7 +81,7 @@ fn a_ship_that_was_not_steered_cannot_be_identified() {
         &["no method can identify this record", "not excited", "rudder is put to both sides"],
     );
     refused(with_column(&still, "heading_deg", |_, _| "12".into()), &["nothing moves"]);
-    // A turning circle of which the beginning is missing: the rudder never moves.
+    // A turning circle without its beginning: the rudder never moves.
     let hard_over = with_column(&good, "rudder_deg", |_, _| "35".into());
     refused(
         with_column(&hard_over, "heading_deg", |row, _| (0.7 * row as f64).to_string()),
@@ -137,7 +137,7 @@ fn a_path_that_is_no_record_is_refused() {
     refused(&["good.csv", "--columns", "missing.toml"], &["missing.toml", "no such file"]);
 }
 
-/// What has no end is neither read to its end nor waited for.
+/// Devices are refused; files and pipes are read up to their maximum size only.
 #[cfg(target_os = "linux")]
 #[test]
 fn only_files_and_pipes_are_read_and_only_so_far() {
@@ -158,7 +158,7 @@ fn only_files_and_pipes_are_read_and_only_so_far() {
     long.is_refused(2, &["more bytes, a scenario has at most 1048576"]);
 }
 
-/// A scenario may come from a stranger, and may name any file of the reader.
+/// A message on a replayed record shows none of its content: a scenario from a stranger may name any file of the user.
 #[test]
 fn the_message_about_a_replayed_record_does_not_show_it() {
     let desk = Desk::new();
@@ -274,7 +274,7 @@ fn options_of_fit_do_what_they_say() {
     assert!(
         fit["zigzag"]["imo"].as_array().is_some_and(|imo| imo.iter().any(|criterion| criterion["verdict"] == "pass"))
     );
-    // Records of the same name: three figures of each kind, and the table says which is which.
+    // Records of the same name have numbered figures, and a note gives the file of each.
     for name in ["fit.png", "fit-run-2.png", "fit-run-3.png", "replays-run-3.svg"] {
         assert!(desk.path("both").join(name).is_file(), "{name}");
     }
@@ -301,7 +301,7 @@ fn options_of_fit_do_what_they_say() {
     assert!(markdown.is_done().out.starts_with("| method"), "{}", markdown.out);
 }
 
-/// A reader that stops early (`study list effects | head -1`) is no reason to complain.
+/// A closed pipe (`study list effects | head -1`) ends the output without an error.
 #[test]
 fn a_closed_pipe_ends_the_output_quietly() {
     let desk = Desk::new();
@@ -327,9 +327,9 @@ fn every_measured_record_can_be_identified() {
     let Some(data) = measured() else { return };
     let desk = Desk::new();
     for (set, record, words) in [
-        // Here its random moment explains the whole manoeuvre: δ_r = 75°, and a replay 38° off.
+        // Here the random moment of maximum likelihood explains the whole manoeuvre: δ_r = 75°, replay error 38°.
         ("esso_osaka", "zigzag_13_57_45", "Not used: maximum-likelihood, because it explains part of the manoeuvre"),
-        // Here it has no interval, and a replay 66° off.
+        // Here maximum likelihood has no interval and a replay error of 66°.
         ("esso_osaka", "zigzag_13_04_24", "° from output-error, because its replay is closest"),
         (
             "esso_osaka",

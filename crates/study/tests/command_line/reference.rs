@@ -1,13 +1,13 @@
-//! The pages of the book that the program can write itself are what it says of itself.
+//! Tests of the reference pages of the book that are made from the output of the program.
 
 use std::path::PathBuf;
 
 use crate::desk::{Desk, of_repository};
 
-/// Writes the pages anew.
+/// Command that writes the pages.
 const COMMAND: &str = "cargo test -p study --test command_line write_the_reference -- --ignored";
 
-/// Pages that are a list of the program: the name of the page, and what is listed.
+/// Pages that print a list of `study list`: name of the page, and name of the list.
 const LISTS: [(&str, &str); 6] = [
     ("methods", "identifiers"),
     ("effects", "effects"),
@@ -17,7 +17,7 @@ const LISTS: [(&str, &str); 6] = [
     ("sidecar", "sidecar"),
 ];
 
-/// What stands before the commands.
+/// Text before the commands.
 const COMMANDS: &str = "\
 # Commands
 
@@ -26,7 +26,11 @@ This page lists every command of `study` with its arguments and options, in the 
 
 ";
 
-/// What stands before the priors of a hull.
+/// Row of the table of commands for a scenario without a command.
+const RUN: &str =
+    "| [`study SCENARIO.toml`](#study-scenariotoml) | Run a scenario: trials, identification, tables, plots |\n";
+
+/// Text before the priors of a hull.
 const PRIORS: &str = "\
 # Priors of a hull
 
@@ -46,12 +50,13 @@ This page is made by `cargo test -p study --test command_line write_the_referenc
 
 ";
 
-/// Length and approach speed of KVLCC2, and her other particulars.
+/// Options with length and approach speed of KVLCC2, and with her other particulars.
 const LENGTH_AND_SPEED: &[&str] = &["--length-m", "320", "--speed-m-s", "7.97"];
 const KVLCC2: &str = "--beam-m 58 --draught-m 20.8 --block-coefficient 0.81 --rudder-area-m2 112.5 --rudder-height-m 15.8 \
     --propeller-diameter-m 9.86 --propeller-rps 1.778 --displacement-t 320415 --x-g-m 11.2";
 
-/// The page of the priors of a hull: coefficients, and the ratios that fill in what is not given.
+/// Page of the priors of a hull: coefficients, and the ratios that replace missing particulars. `said` returns the
+/// output of the program for some arguments.
 fn priors(said: impl Fn(&[&str]) -> String) -> String {
     let list = |particulars: &str| {
         let request = ["list", "priors", "--format", "markdown"];
@@ -67,7 +72,7 @@ fn priors(said: impl Fn(&[&str]) -> String) -> String {
     )
 }
 
-/// Every page with what it has to hold.
+/// Path of every page, with the text that it must have.
 fn pages() -> Vec<(PathBuf, String)> {
     let desk = Desk::new();
     let said = |arguments: &[&str]| desk.run(arguments).is_done().out.clone();
@@ -76,7 +81,8 @@ fn pages() -> Vec<(PathBuf, String)> {
     all.map(|(page, text)| (of_repository(&format!("docs/src/reference/{page}.md")), text)).collect()
 }
 
-/// The page of all commands. An option that every command has is told once.
+/// Page of all commands. Options of every command are listed once. `said` returns the output of the program for some
+/// arguments.
 fn commands(said: impl Fn(&[&str]) -> String) -> String {
     let whole = said(&["--help"]);
     let (_, list) = whole.split_once("\nCommands:\n").expect("commands");
@@ -85,7 +91,13 @@ fn commands(said: impl Fn(&[&str]) -> String) -> String {
         names.filter(|name| *name != "help").map(|name| (name, said(&[name, "--help"]))).collect();
     let has_all = |item: &Item| helps.iter().all(|(_, help)| items(help).contains(item));
     let (common, own): (Vec<Item>, Vec<Item>) = items(&whole).into_iter().partition(has_all);
-    let mut page = format!("{COMMANDS}## study SCENARIO.toml\n\n{}", section("study [OPTIONS] SCENARIO.toml", &own));
+    let purposes = helps.iter().map(|(name, help)| {
+        let summary = help.split("\n\n").next().unwrap_or_default().replace('\n', " ");
+        format!("| [`study {name}`](#study-{name}) | {summary} |\n")
+    });
+    let overview = format!("| command | purpose |\n|---|---|\n{RUN}{}\n", purposes.collect::<String>());
+    let mut page =
+        format!("{COMMANDS}{overview}## study SCENARIO.toml\n\n{}", section("study [OPTIONS] SCENARIO.toml", &own));
     for (name, help) in &helps {
         let (summary, rest) = help.split_once("\n\nUsage: ").expect("a summary and a usage");
         let usage = rest.lines().next().unwrap_or_default();
@@ -96,12 +108,12 @@ fn commands(said: impl Fn(&[&str]) -> String) -> String {
     page.trim_end().to_owned() + "\n"
 }
 
-/// How a command is called, and what it takes.
+/// Usage of a command, and the table of its arguments and options.
 fn section(usage: &str, items: &[Item]) -> String {
     format!("```text\n{usage}\n```\n\n{}", table(items))
 }
 
-/// An argument or an option, and what it means.
+/// Argument or option, and its meaning.
 type Item = (String, String);
 
 fn table(items: &[Item]) -> String {
@@ -113,7 +125,8 @@ fn table(items: &[Item]) -> String {
     format!("| argument or option | meaning |\n|---|---|\n{}\n", rows.collect::<String>())
 }
 
-/// Arguments and options of a help text: a name is indented by less than ten blanks, its meaning by ten.
+/// Arguments and options of a help text, in which names are indented by fewer than ten blanks and meanings by ten or
+/// more.
 fn items(help: &str) -> Vec<Item> {
     let mut items: Vec<Item> = Vec::new();
     let mut is_list = false;

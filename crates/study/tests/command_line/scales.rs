@@ -1,17 +1,17 @@
-//! Records of similar ships of different size and speed: `study fit` and `study trace`.
+//! Tests of `study fit` and `study trace` on records of similar ships at different scales.
 
 use crate::desk::{Desk, with_column, zig_zag_csv};
 
-/// YUKUN's length and speed.
+/// Sidecar with length and speed of YUKUN.
 const SHIP: &str = "[ship]\nlength-m = 105.0\nspeed-m-s = 8.59\n";
 
-/// A twenty-fifth of it, in Froude's speed.
+/// Sidecar of her scale model, 1:25, at the same Froude number.
 const MODEL: &str = "[ship]\nlength-m = 4.2\nspeed-m-s = 1.718\n";
 
-/// What a time of the model is multiplied with to be one of the ship.
+/// Factor from times of the model to times of the ship, √25.
 const FACTOR: f64 = 5.0;
 
-/// A record of the ship, and one that its model would have made.
+/// Writes a record of the ship, and the same record at the scale of the model.
 fn both(desk: &Desk) {
     let ship = zig_zag_csv();
     desk.file("ship.csv", &ship);
@@ -65,13 +65,13 @@ fn a_model_and_its_ship_are_one_analysis() {
         assert_eq!(term["verdict"], "scales", "{term}");
         assert!(term["own"].as_array().is_some_and(|own| own.len() == 2), "{term}");
     }
-    // What was read off a record stays in its own time.
+    // Characteristics read from a record stay at its scale.
     let period = |k: usize| fit["trials"][k]["zigzag"]["period_s"].as_f64().expect("a zig-zag");
     assert!((period(1) / period(0) - FACTOR).abs() < 1e-3);
     assert!(desk.path("fit/amplitude.png").is_file());
 }
 
-/// The same damping at both scales is one ship, other damping at one of them is not.
+/// If the prime response differs between the scales, the terms do not scale.
 #[test]
 fn a_model_that_answers_otherwise_does_not_scale() {
     let desk = Desk::new();
@@ -118,7 +118,7 @@ fn a_record_without_a_scale_is_not_pooled_with_two() {
         desk.run(&[command, "ship.csv", "model.csv", "other.csv"])
             .is_refused(2, &["2 scales", "length and speed of other", "sidecar"]);
     }
-    // Without the model there is one scale, and nothing to say.
+    // Without the model there is one scale, and no sentence on scales.
     let run = desk.run(&["fit", "ship.csv", "other.csv", "--method", "output-error", "--out", "one"]);
     assert!(!run.is_done().out.contains("prime time"), "{}", run.out);
     assert!(desk.json("one/fit.json").get("scales").is_none());

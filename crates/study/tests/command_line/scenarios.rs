@@ -1,4 +1,4 @@
-//! Scenarios, good and bad; lists, reports and usage.
+//! Tests of valid and invalid scenarios: `study check`.
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
 
@@ -31,7 +31,7 @@ method.output-error = {}
 method.least-squares = {}
 ";
 
-/// The scenario with one piece replaced.
+/// [`GOOD`] with the first occurrence of `from` replaced.
 fn changed(from: &str, to: &str) -> String {
     assert!(GOOD.contains(from), "{from}");
     GOOD.replacen(from, to, 1)
@@ -235,7 +235,7 @@ fn a_faulty_draw_is_shown_at_its_place() {
     refused(&draw(&format!("{noise}gamma = 3")), 31, &["no such key", "`normal`"]);
     refused(&draw(&format!("{noise}uniform = {{ from = 0.2, to = 0.1 }}")), 31, &["`to`", "is 0.1", "above 0.2"]);
     refused(&draw(&format!("{noise}normal = {{ mean = 0.1, sd = -1 }}")), 31, &["`sd`", "is -1", "above 0"]);
-    // Some draws make no trial: found before the first of 4000, and blamed on the draw.
+    // Draws that can make no trial are found before any trial runs, and the message names the draw.
     let period = "key = \"ship.first-order.T-s\"\nuniform = { from = 0.0, to = 3.0 }";
     refused(&draw(period), 31, &["draw of `ship.first-order.T-s` reaches", "T-s` is 0.0"]);
     let cut = format!("{noise}normal = {{ mean = 0.1, sd = 0.01 }}\nbetween = [0.5, 0.6]");
@@ -268,7 +268,7 @@ fn a_faulty_rule_or_validation_is_shown_at_its_place() {
     refused(&output("figures = [\"../errors\"]"), 28, &["output.figures", "/"]);
 }
 
-/// The scenario with a ship of one's own.
+/// [`GOOD`] with a first-order ship given by K and T.
 fn first_order() -> String {
     changed("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1\nT-s = 16.3")
 }
@@ -316,7 +316,7 @@ fn the_record_of_a_replay_is_read_with_the_scenario() {
     desk.file("studies/case.toml", replay("../record.csv"));
     desk.file("record.csv", zig_zag_csv());
     desk.run(&["check", "studies/case.toml"]).is_done();
-    // What the sidecar beside the record says decides the rows.
+    // The sidecar of the record changes the rows.
     desk.run(&["studies/case.toml", "--out", "out", "--quiet"]).is_done();
     desk.file("record.trial.toml", "[part]\nuntil-s = 100.0\n");
     desk.run(&["studies/case.toml", "--out", "out"]).is_refused(2, &["another study", "record"]);
@@ -398,7 +398,7 @@ fn every_scenario_of_the_repository_is_right() {
     assert_eq!(run.is_done().out.lines().filter(|line| !line.starts_with(' ')).count(), files.len());
 }
 
-/// What the title of a figure names is in colour.
+/// Every method named in the title of a key figure is highlighted, if any method is.
 #[test]
 fn a_title_names_what_is_highlighted() {
     let mut titles = 0;

@@ -1,4 +1,5 @@
-//! Schemas: the published ones are those of the program, and whatever the program writes in any test holds to them.
+//! Tests of the JSON schemas: the published schemas are those of the program, and the documents that the program writes
+//! in these tests are valid.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -16,7 +17,7 @@ fn all() -> Vec<(String, SchemaSubject)> {
     SchemaSubject::value_variants().iter().filter_map(named).collect()
 }
 
-/// What is wrong with a document by a schema.
+/// First fault of a document by the schema `name`; empty if the document is valid.
 fn faults(name: &str, document: &Value) -> Vec<String> {
     static SCHEMAS: LazyLock<Vec<(String, Value)>> =
         LazyLock::new(|| all().into_iter().map(|(name, what)| (name, schema(what).as_value().clone())).collect());
@@ -24,7 +25,8 @@ fn faults(name: &str, document: &Value) -> Vec<String> {
     check(root, root, document).err().into_iter().collect()
 }
 
-/// Holds a value to a part of the schema `root`: the keywords of draft 7 that schemas of this program use, no others.
+/// Validates a value by a part of the schema `root`, with the keywords of draft 7 that schemas of this program use;
+/// panics at any other keyword. Fails with the keyword that refuses the value.
 fn check(root: &Value, part: &Value, value: &Value) -> Result<(), String> {
     let wrong = |keyword: &str, limit: &Value| Err(format!("{keyword} {limit} refuses {value}"));
     let Some(part) = part.as_object() else { return if *part == true { Ok(()) } else { wrong("schema", part) } };
@@ -65,7 +67,7 @@ fn check(root: &Value, part: &Value, value: &Value) -> Result<(), String> {
             }
             "items" => {
                 let mut items = value.as_array().into_iter().flatten().enumerate();
-                // One schema for all, or one for each place.
+                // A single schema for all items, or a list with a schema for each.
                 let of = |place: usize| limit.as_array().map_or(Some(limit), |limits| limits.get(place));
                 items.try_for_each(|(place, item)| {
                     of(place).map_or(Ok(()), |own| within(&place, check(root, own, item)))
@@ -105,13 +107,14 @@ fn is_of_type(value: &Value, kind: &Value) -> bool {
     }
 }
 
-/// Holds a document to the schema of a name.
+/// Asserts that a document is valid by the schema `name`; `file` is its path in messages.
 pub fn hold(name: &str, file: &Path, document: &Value) {
     let faults = faults(name, document);
     assert!(faults.is_empty(), "{} and the schema of {name}: {}", file.display(), faults.join("; "));
 }
 
-/// A TOML file as the values of JSON; infinite numbers, which JSON has not, as a number.
+/// TOML text as JSON; `None` if it is no TOML. Numbers that are not finite, which JSON lacks, become the largest
+/// number.
 fn of_toml(text: &str) -> Option<Value> {
     fn value(toml: toml::Value) -> Value {
         match toml {
@@ -124,7 +127,8 @@ fn of_toml(text: &str) -> Option<Value> {
     Some(value(toml::Value::Table(text.parse().ok()?)))
 }
 
-/// Holds all documents below a folder to their schemas; a file that a test has damaged is no JSON or TOML.
+/// Asserts that all documents below a folder are valid. A file that is no JSON or TOML, because a test has damaged it,
+/// is skipped.
 pub fn hold_below(folder: &Path) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -139,7 +143,7 @@ pub fn hold_below(folder: &Path) {
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 serde_json::from_str(&text).iter().for_each(|own| hold(name.trim_end_matches(".json"), &path, own));
             }
-            // That of a prediction has no schema.
+            // The curves of a prediction have no schema.
             "curves.json" if folder.join("fit.json").is_file() => {
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 serde_json::from_str(&text).iter().for_each(|own| hold("fit-curves", &path, own));
@@ -175,8 +179,8 @@ fn the_published_schemas_are_those_of_the_program() {
     }
 }
 
-/// Every scenario and sidecar of the repository that a person wrote names its schema in the first line, and all hold to
-/// it.
+/// All scenarios and sidecars of the repository are valid, and those written by a person name their schema in the first
+/// line.
 #[test]
 fn files_of_the_repository_hold_to_their_schemas() {
     let mut seen = [0, 0];
@@ -198,8 +202,7 @@ fn files_of_the_repository_hold_to_their_schemas() {
             let named = text.lines().next().and_then(|line| line.strip_prefix("#:schema ")).unwrap_or_default();
             let place = path.parent().expect("a folder").join(named).canonicalize();
             let published = of_repository(&format!("docs/schemas/{which}.json")).canonicalize();
-            // What the program writes beside a simulated record has no place of its own yet, and what is compiled into
-            // it needs none.
+            // Sidecars of simulated records and scenarios of the benchmark do not name their schema.
             let is_written = path.with_extension("").with_extension("truth.json").is_file()
                 || path.parent().is_some_and(|folder| folder.ends_with("bench"));
             if !is_written {
@@ -222,7 +225,7 @@ fn the_sample_of_a_style_and_the_published_benchmark_hold_to_theirs() {
     hold("bench", &bench, &document);
 }
 
-/// What a schema is for: a wrong key, a wrong kind of value and a missing key are seen before the program runs.
+/// The schema of a scenario refuses a wrong key, a wrong type of value and an unknown name.
 #[test]
 fn a_schema_refuses_what_the_program_refuses() {
     let good = std::fs::read_to_string(of_repository("scenarios/yukun.toml")).expect("a file");

@@ -1,4 +1,4 @@
-//! Answers that come as a table, from a program in any language.
+//! Tests of `study score`: answers of another program as a table.
 
 use campaign::rows::StudyRow;
 use campaign::store::StoredStudy;
@@ -6,13 +6,14 @@ use campaign::store::StoredStudy;
 use crate::desk::Desk;
 use crate::scenarios::GOOD;
 
-/// Two cells of three trials each.
+/// Scenario of two cells with three trials each.
 fn study() -> String {
     let two = "[[sweep]]\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.1, 0.2]\n";
     format!("{}\n{two}", GOOD.replace("replicates = 2", "replicates = 3"))
 }
 
-/// The trials of the study in a folder, and for each the line of a table of answers with the true K, T and δ_r.
+/// Simulates the trials of the scenario into `records`; returns for each the row of a table of answers with its true K,
+/// T and δ_r.
 fn simulated(desk: &Desk) -> Vec<String> {
     desk.file("two.toml", study());
     let all = ["simulate", "two.toml", "--replicate", "all", "--seed", "7", "--out", "records", "--quiet"];
@@ -58,14 +59,14 @@ fn answers_from_the_truth_have_no_error() {
         let error = row.errors()[1].expect("all answered").abs();
         assert!(if is_ours { error < 1e-12 } else { error > 1e-6 }, "{row:?}");
     }
-    // Among the records of the folder neither their list nor the answers are taken for one.
+    // The list of the records and the answers in the folder are not read as records.
     let fit = desk.run(&["fit", "records", "--method", "integral-least-squares", "--out", "fitted"]);
     assert!(fit.is_done().out.contains("6 records together"), "{}", fit.out);
-    // The other methods answer as if nobody else had.
+    // The answers do not change the rows of the other methods.
     desk.run(&["two.toml", "--seed", "7", "--out", "alone", "--quiet"]).is_done();
     let beside: Vec<StudyRow> = scored.into_iter().filter(|row| row.method < 2).collect();
     assert_eq!(beside, rows(&desk, "alone"));
-    // Whoever asks again gets the same, and answers that have changed are another study.
+    // A repeated run is accepted; changed answers are another study.
     desk.run(&["score", "records/perfect.csv", "--out", "scored", "--quiet"]).is_done();
     desk.file("records/perfect.csv", HEAD.to_owned() + &lines[1..].concat());
     let changed = desk.run(&["score", "records/perfect.csv", "--out", "scored"]);

@@ -1,5 +1,5 @@
-//! What is stored is checked by everyone who reads it, only our own files are replaced or removed, and nothing is lost
-//! in silence.
+//! Tests of stored studies: every reader checks the files, only files of the program are replaced or removed, and a
+//! loss is reported.
 
 use std::fs;
 use std::time::Duration;
@@ -24,7 +24,7 @@ key = "sensor.heading-noise-deg"
 values = [0.1, 0.5]
 "#;
 
-/// A finished study in `whole`.
+/// Folder with a finished study in `whole`.
 fn desk() -> Desk {
     let desk = Desk::new();
     desk.file("study.toml", STUDY);
@@ -32,7 +32,7 @@ fn desk() -> Desk {
     desk
 }
 
-/// What is made of the rows is made again where it was changed; before that nobody takes it for what it was.
+/// A report refuses a damaged file, and a rerun of the study writes it again.
 #[test]
 fn a_flipped_bit_is_noticed_by_every_reader() {
     let desk = desk();
@@ -44,7 +44,7 @@ fn a_flipped_bit_is_noticed_by_every_reader() {
             damaged[place] ^= 0x10;
             desk.file(&format!("flipped/{name}"), &damaged);
             if desk.run(&["report", "flipped", "--quiet"]).code == Some(0) {
-                // A byte of a block that says nothing.
+                // Some bytes of a block hold no data.
                 assert!(name.starts_with("rows"), "{name} at {place}");
                 continue;
             }
@@ -61,7 +61,7 @@ fn a_block_that_cannot_be_read_is_not_computed_again() {
     let desk = desk();
     let block = desk.path("whole/rows/0000-0000.parquet");
     let bytes = fs::read(&block).expect("a block");
-    // A folder in its place cannot be read, whoever runs this.
+    // A folder in place of the file cannot be read by any user.
     fs::remove_file(&block).expect("it was there");
     fs::create_dir(&block).expect("a folder");
     desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_refused(1, &["0000-0000.parquet", "failed to read"]);
@@ -104,7 +104,7 @@ fn links_in_the_result_folder_are_not_followed() {
     for name in names {
         assert_eq!(desk.bytes(&format!("victims/{name}")), b"precious", "{name}");
     }
-    // A folder behind a link is somebody else's too.
+    // A folder behind a link is not written to, either.
     desk.file("elsewhere/precious", "");
     desk.file("linked/.keep", "");
     std::os::unix::fs::symlink("../elsewhere", desk.path("linked/rows")).expect("a link");
@@ -112,7 +112,7 @@ fn links_in_the_result_folder_are_not_followed() {
     assert_eq!(fs::read_dir(desk.path("elsewhere")).expect("a folder").count(), 1);
 }
 
-/// A trial of minutes: many dense rows to trace.
+/// Ctrl-C ends the program although a trial takes minutes: a trace of very many rows.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_does_not_wait_for_a_trial() {
@@ -125,7 +125,7 @@ fn ctrl_c_does_not_wait_for_a_trial() {
     std::thread::sleep(Duration::from_millis(100));
     let (run, waited) = interrupted(run);
     run.is_refused(130, &["error: stopped after 0 of 8 trials"]);
-    // Half a second on a machine with nothing else to do.
+    // It takes half a second on an idle machine.
     assert!(waited < Duration::from_secs(2), "{waited:?}");
     desk.run(&["report", "slow"]).is_refused(2, &["slow", "no rows"]);
 }
@@ -146,7 +146,8 @@ fn two_reruns_and_a_report_at_once_leave_a_whole_study() {
     }
 }
 
-/// A scenario says which of its figures are made, and which stands for it; all there are can be requested.
+/// `output.figures` selects the figures that are made, `output.figure` the key figure; `--figures` overrides the
+/// selection.
 #[test]
 fn figures_are_chosen() {
     let desk = Desk::new();
@@ -182,8 +183,8 @@ fn figures_are_chosen() {
     assert_eq!(figures("all"), ["coverage.png", "errors-over-bound.png", "errors.png", "hero.png"]);
 }
 
-/// A ship that is not first order has no K and T: what is found is held against the nearest response and called so,
-/// intervals hold no truth, and K and T from trial to trial show why.
+/// For a ship that is not first order, estimates are compared with the nearest first-order response and figures and
+/// tables say so; there is no figure of coverage, and a figure shows how K and T change with the manoeuvre.
 #[test]
 fn figures_of_ships_that_are_not_first_order_say_so() {
     let sweeps = r#"
@@ -214,7 +215,7 @@ points = [
     assert!(desk.text("out/report.md").contains("error of K and T over the Cramér–Rao"));
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains(" of the 5/5") && !desk.path("out/ranking.png").exists());
-    // Tables say it over themselves, as the axes do.
+    // Titles of tables name the reference, as the axes do.
     let some = "relative to the truth, and of ships that are not first order to the nearest first-order response";
     let page = desk.text("out/report.md");
     assert_eq!(page.matches(some).count(), 3, "two tables and the sentence below them\n{page}");
@@ -226,7 +227,7 @@ points = [
     assert!(run.is_done().out.contains(all) && desk.text("cubic/summary.md").contains(all), "{}", run.out);
 }
 
-/// Methods are compared on the same trials in a table of their own, where there are several.
+/// With several methods `summary.tex` has a second table, which compares them on the same trials.
 #[test]
 fn the_table_for_a_paper_has_the_paired_comparison() {
     let desk = desk();
@@ -244,7 +245,8 @@ fn the_table_for_a_paper_has_the_paired_comparison() {
     assert_eq!(desk.text("one/summary.tex").matches("% Needs").count(), 1);
 }
 
-/// Five points by two are lines over the five, side by side for the two, whichever axis is named first.
+/// With two numeric axes of five and two points, the five are the axis and the two are panels, in either order of the
+/// sweeps.
 #[test]
 fn an_axis_of_two_numbers_is_two_panels() {
     let desk = Desk::new();
@@ -261,7 +263,7 @@ fn an_axis_of_two_numbers_is_two_panels() {
     }
 }
 
-/// Where manoeuvres are predicted, how often the intervals hold is a table and a figure.
+/// A study of predictions has a table and a figure of the coverage of the intervals.
 #[test]
 fn coverage_of_predictions_is_drawn() {
     let desk = Desk::new();
@@ -279,7 +281,7 @@ fn coverage_of_predictions_is_drawn() {
     );
     let table = desk.text("out/predictions.csv");
     assert!(table.lines().count() > 4, "{table}");
-    // What an earlier version did not tell of the cells is told when the study is drawn again.
+    // A rerun adds the facts on cells that an earlier version did not store.
     let told = |text: &str| text.contains("length_over_speed_s");
     let criteria = desk.text("out/criteria.csv");
     let (cells, before) = (desk.text("out/cells.json"), sha256(&desk.bytes("out/cells.json")));
@@ -314,7 +316,7 @@ fn intervals_are_scaled_by_other_ships() {
     let number = |cell: &str| cell.parse::<f64>().expect("a number");
     for line in table.lines().filter(|line| line.contains("output-error")) {
         let cells: Vec<f64> = line.split(',').skip(2).map(number).collect();
-        // A factor above 1 covers no less, one below 1 no more.
+        // A factor above 1 does not lower the coverage, a factor below 1 does not raise it.
         assert!((cells[2] - cells[1]) * (cells[0] - 1.0) >= 0.0 && cells[3] > 0.0, "{line}");
     }
     let (two, _) = sweep.split_once(", 25.0").expect("three ships");
@@ -323,7 +325,7 @@ fn intervals_are_scaled_by_other_ships() {
     assert!(!desk.path("two/interval-factors.csv").exists());
 }
 
-/// Where a sweep has sizes of an effect, the size from which on it is named is a table of its own.
+/// A sweep over sizes of an effect gives a table of the sizes from which on the effect is named.
 #[test]
 fn sizes_of_effects_make_a_table_of_blind_spots() {
     let desk = Desk::new();
@@ -360,7 +362,7 @@ trace.menu = ["wind_moment"]
     let size: f64 = fine[7].parse().expect("between the sizes");
     assert!((0.01..2.0).contains(&size), "{table}");
     assert!(desk.text("out/report.md").contains("named in 90 % from"));
-    // Labels without their values name no sizes.
+    // Labels that do not contain the value of their point have no sizes.
     desk.file("study.toml", study.replace("wind 2°", "much wind").replace("wind 0.01°", "little wind"));
     desk.run(&["study.toml", "--out", "none", "--quiet"]).is_done();
     assert!(desk.path("none/tracing.csv").exists() && !desk.path("none/blind-spots.csv").exists());

@@ -1,4 +1,4 @@
-//! Records, good and bad: `study trace`.
+//! Tests of `study trace` on valid and invalid records.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use ship::{ResponseModel, Ship, ships};
 
 use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
 
-/// The paper's ship with sway coupling that nobody declares.
+/// YUKUN with sway coupling of second order, T₂ = 2.5 s and T₃ = 6.2 s.
 pub fn second_order() -> Ship {
     with_effect(Arc::new(SecondOrder), &[2.5, 6.2])
 }
@@ -23,7 +23,8 @@ fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     ship
 }
 
-/// What the contract says beyond the schema, to which every run of these tests is held.
+/// Asserts properties of a trace that its schema does not state, for `trials` fitted and `others` held-out records:
+/// numbers of entries, order of weights, ranges of coverages, errors at the horizon of 20 s.
 fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
     assert_eq!(json["schema"], "trace/4");
     assert!(json["headline"].as_str().is_some_and(|text| text.ends_with('.')), "{}", json["headline"]);
@@ -135,8 +136,8 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     }
 }
 
-/// Whoever opens the page reads the finding with both ratios and sees it before any table; what it rests on is closed
-/// at first, and a caption stands there once.
+/// The page begins with the finding, which has the error ratios of fitted and held-out records; the evidence is folded,
+/// figures are numbered without gaps, and no caption is repeated.
 #[test]
 fn the_page_begins_with_the_finding_and_its_figure() {
     let desk = Desk::new();
@@ -179,7 +180,8 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     assert!(!desk.path("alone/hero.png").exists());
 }
 
-/// Where the model fails with more rudder than was fitted, its limits say so and the next trial is one there.
+/// If the model fails on a held-out record with more rudder than the fitted records, the limits state it and the next
+/// trial has that rudder.
 #[test]
 fn a_failure_beyond_the_fitted_rudder_is_a_limit_and_the_next_trial() {
     let desk = Desk::new();
@@ -197,7 +199,7 @@ fn a_failure_beyond_the_fitted_rudder_is_a_limit_and_the_next_trial() {
     assert!(["stalled", "other"].iter().all(|name| figure.contains(&format!(">\n{name}\n"))), "{figure}");
 }
 
-/// Everything shown is made from `trace.json` and the tables beside it.
+/// `study report` makes page and figures from `trace.json` and the tables next to it, with the same bytes.
 #[test]
 fn a_trace_is_drawn_again_from_its_files() {
     let desk = Desk::new();
@@ -216,7 +218,7 @@ fn a_trace_is_drawn_again_from_its_files() {
     desk.run(&["report", "bad"]).is_refused(2, &["trace.json", "study trace"]);
 }
 
-/// The moment that the base lacks is a table and a figure for every fitted record, and none for those held out.
+/// Every fitted record has tables and a figure of the moment that the base lacks; held-out records have none.
 #[test]
 fn the_missing_moment_is_written() {
     let desk = Desk::new();
@@ -261,8 +263,8 @@ fn a_complete_base_is_clean_and_the_exit_code_does_not_judge() {
     assert_eq!((json["verdict"].as_str(), json["effects"].as_array().map(Vec::len)), (Some("clean"), Some(0)));
 }
 
-/// In gusts a noise is found, and the band that is made from it holds little more than half of the headings: then the
-/// noise does not describe the record, and nobody calls it clean.
+/// In gusts the 95 % band from the estimated noise holds only 58 % of the headings: the noise does not describe the
+/// record, and the verdict is `disturbed`, not `clean`.
 #[test]
 fn a_record_beside_its_own_band_is_not_clean() {
     let desk = Desk::new();
@@ -299,7 +301,7 @@ fn a_record_that_cannot_be_traced_is_refused() {
     assert!(!desk.path("run-trace").exists());
 }
 
-/// A column that is withheld is as good as none, and a folder of descriptions is looked into by name.
+/// A withheld column counts as missing, and a folder of sidecars is searched for the name of the record.
 #[test]
 fn columns_can_be_withheld_and_described_in_a_folder() {
     let desk = Desk::new();
@@ -344,7 +346,8 @@ fn effects_can_be_asked_for_and_excluded() {
     };
     let with = effects("with/trace.json");
     assert!(["speed_loss", "moment_drift"].iter().all(|id| with.contains(&((*id).to_owned(), true))), "{with:?}");
-    // Beside effects that are not there the delay has its name, or is located in the history of the rudder.
+    // With required effects that the ship lacks, her sway coupling is named, or located as a moment of the rudder
+    // history.
     let located = desk.json("with/trace.json")["located"].to_string();
     let is_seen = with.contains(&("second_order".to_owned(), false)) || located.contains("history of the rudder");
     assert!(is_seen, "{with:?} {located}");
@@ -362,7 +365,7 @@ fn effects_can_be_asked_for_and_excluded() {
     desk.run(&both).is_refused(2, &["without-effect", "speed_loss"]);
 }
 
-/// Several records and none held out: each is left out in turn.
+/// If no record is held out, each of several records is left out in turn.
 #[test]
 fn runs_are_left_out_in_turn() {
     let desk = Desk::new();

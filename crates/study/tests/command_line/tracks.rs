@@ -1,4 +1,4 @@
-//! Tracks: records of position alone, and the current that a circle shows.
+//! Tests of tracks: records with positions but no speed, and the current in a turning circle.
 
 use ship::angle::{from_deg, to_deg};
 use simulate::{Manoeuvre, Recording, Side, SimulatedShip, Simulation, SteeringGear, StreamKey};
@@ -10,7 +10,7 @@ const SCALE: [&str; 4] = ["--length-m", "160.9", "--speed-kn", "15"];
 /// Distance of the pivot point ahead of the point whose positions are recorded, m.
 const PIVOT: f64 = 60.0;
 
-/// Time in which its drift follows its turn, s.
+/// Time constant with which the sway velocity follows the yaw rate, s.
 const LAG: f64 = 12.0;
 
 /// A record of the Mariner with positions in a current (north and east, m/s), and without speed; 1 Hz.
@@ -48,8 +48,8 @@ fn circle(current: [f64; 2], turn_deg: f64) -> String {
     record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
-/// A circle among the records of a fit is measured: its advance is the way ahead at 90° change of heading, and the page
-/// has it to scale beside what the zig-zag measures of the criteria of IMO.
+/// A fit measures a circle among its records: the advance is the distance ahead at 90° change of heading. The page has
+/// the circle to scale, and the IMO criteria that the zig-zag measures.
 #[test]
 fn a_fit_measures_a_circle_and_the_criteria() {
     let desk = Desk::new();
@@ -85,7 +85,8 @@ fn a_fit_measures_a_circle_and_the_criteria() {
         assert!(page.contains(part), "{part}: {page}");
     }
     assert!(page.contains("turn, a turning circle to starboard with 20.0° of rudder: advance"), "{page}");
-    // The predicted circle is that of the same rudder, and its median is drawn beside the measured one.
+    // The predicted circle has the rudder of the measured circle, and its median track passes the median
+    // characteristics.
     let predicted = &json["predicted_circle"];
     let tactical = predicted["tactical_diameter_lengths"]["median"].as_f64().expect("a number");
     assert!((tactical / lengths("tactical_diameter_lengths") - 1.0).abs() < 0.15, "{predicted} {turn}");
@@ -102,14 +103,13 @@ fn a_fit_measures_a_circle_and_the_criteria() {
     assert!((point("y", 30) - median("advance_lengths")).abs() < 1e-6, "{predicted}");
     assert!((point("x", 30) - median("transfer_lengths")).abs() < 1e-6, "{predicted}");
     assert!((point("x", 60) - tactical).abs() < 1e-6, "{predicted}");
-    // A zig-zag that the form does not ask for fills no form in.
+    // A zig-zag without the length of the ship has no measured and no predicted circle.
     desk.run(&["fit", "zig.csv", "--method", "output-error", "--out", "bare", "--quiet"]).is_done();
     let bare = desk.json("bare/fit.json");
     assert!(bare["trials"][0].get("circle").is_none() && bare.get("predicted_circle").is_none());
 }
 
-/// Positions tell the speed, and the hull that is fitted to it the drift: advance and tactical diameter are predicted,
-/// with the drift angle and the pivot point.
+/// A hull fitted to a record with positions predicts advance, drift angle, speed loss and pivot point of a turn.
 #[test]
 fn a_record_of_positions_tells_a_track() {
     let desk = Desk::new();
@@ -119,7 +119,7 @@ fn a_record_of_positions_tells_a_track() {
     let circle = ["predict", "f/fit.json", "--manoeuvre", "turning-circle:20", "--draws", "60", "--out", "p"];
     desk.run(&circle).is_done();
     let json = desk.json("p/predict.json");
-    // The page has the circle of IMO only where an answer is to be taken.
+    // The circle of IMO is predicted only if the verdict recommends K and T.
     desk.run(&[&["fit", "zig.csv", "--method", "output-error", "--out", "c", "--quiet"][..], &SCALE].concat())
         .is_done();
     let predicted = ["f", "c"].map(|folder| desk.json(&format!("{folder}/fit.json"))["predicted_circle"].clone());
@@ -131,7 +131,7 @@ fn a_record_of_positions_tells_a_track() {
     assert!((2.0..5.0).contains(&median("advance_lengths")), "{figures}");
     assert!((0.2..1.0).contains(&median("pivot_ahead_lengths")), "{figures}");
     assert!(median("drift_angle_deg") > 2.0 && median("speed_loss_share") > 0.05, "{figures}");
-    // A heading alone leaves nothing to draw a track from.
+    // Heading and rudder alone give no track.
     let bare: String =
         zig_zag().lines().map(|line| line.rsplitn(3, ',').last().unwrap_or(line).to_owned() + "\n").collect();
     desk.file("bare.csv", bare);
@@ -141,7 +141,7 @@ fn a_record_of_positions_tells_a_track() {
     assert!(run.is_done().out.contains("no track"), "{}", run.out);
 }
 
-/// The current of a circle of two rounds is taken out of its own track, and of that of another record.
+/// The current in a circle of two rounds is removed from its track, and from that of another record.
 #[test]
 fn a_current_is_found_and_taken_out() {
     let desk = Desk::new();
@@ -170,7 +170,7 @@ fn a_current_is_found_and_taken_out() {
     let drawn = ["predict", "f/fit.json", "--replay", "still.csv", "--draws", "60", "--out", "drawn"];
     let run = desk.draw(&[&drawn[..], &SCALE, &own_method].concat());
     assert!(run.is_done().err.contains("the ship is steered with her fitted hulls"), "{}", run.err);
-    // The page names no folder of this machine and no source, because none is drawn alone.
+    // The page names no folder of this machine, and no source of uncertainty, because a replay draws none alone.
     let page = desk.text("drawn/report.md");
     let shown = ["\n\nfit.json: 60 ships", "which adds up over 1.1 rounds: the mean yaw rate is"];
     assert!(shown.iter().all(|part| page.contains(part)) && !page.contains("ostly from"), "{page}");
@@ -187,7 +187,7 @@ fn a_current_is_found_and_taken_out() {
     desk.run(&["predict", "f/fit.json", "--current-from", "two-rounds.csv"]).is_refused(2, &["--replay"]);
 }
 
-/// Three circles of Esso Osaka on one pond go on for two rounds; the currents they show are nearly the same.
+/// Three circles of Esso Osaka on the same pond have two rounds; their estimated currents are nearly equal.
 #[test]
 fn the_current_of_one_circle_is_about_that_of_another() {
     let Some(data) = measured() else { return };

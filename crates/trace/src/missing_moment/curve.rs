@@ -37,7 +37,8 @@ const LEVELS: [f64; 2] = [1e-3, 1e13];
 /// Number of intervals of the grid of levels.
 const GRID: usize = 12;
 
-/// Maximum likelihood estimate of log λ, for a ship with K/T = `gain` (1/s²); `value` is −2 log L of a filter.
+/// Maximum likelihood estimate of log λ (λ in 1/s), for a ship with K/T = `gain` (1/s²); `value` is −2 log L of a
+/// filter.
 pub(super) fn maximum_likelihood_level(
     rows: &MomentRows,
     gain: f64,
@@ -125,7 +126,7 @@ impl CurveEquations {
     }
 }
 
-/// Curve against one channel with its band.
+/// Missing moment as a function of one channel, with its band.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MomentCurve {
     /// Values of the channel over the range of the record, SI units and rad.

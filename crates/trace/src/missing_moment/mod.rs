@@ -63,12 +63,12 @@ pub struct RelativeResponse {
 
 /// Missing moment as a function of one channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
+pub struct MomentOverChannel {
     /// Channel.
-    pub over: MomentChannel,
+    pub channel: MomentChannel,
     /// Curve with its band.
     pub curve: MomentCurve,
-    /// Share of the variance per second of the walk that the curve explains; `None` if the moment is constant.
+    /// Share, 0 to 1, of the variance per second of the walk that the curve explains; `None` if the moment is constant.
     pub share: Option<f64>,
     /// Indices of the explanations inside the band everywhere; empty if zero is inside as well.
     pub inside: Vec<usize>,
@@ -83,14 +83,14 @@ pub struct MissingMoment {
     pub moment: Vec<f64>,
     /// Standard deviation of the smoothed moment, rad of rudder.
     pub sd: Vec<f64>,
-    /// Values of the channels that are known, at the rows with a heading.
+    /// Values of the available channels at the rows with a heading, SI units and rad.
     pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
     pub explanations: Vec<RelativeResponse>,
     /// Moment of every explanation after the same smoother, rad of rudder.
-    pub explained: Vec<Vec<f64>>,
+    pub explanation_moments: Vec<Vec<f64>>,
     /// Curves over the channels that vary: first those whose band excludes zero, by increasing deviance.
-    pub panels: Vec<Panel>,
+    pub channel_moments: Vec<MomentOverChannel>,
 }
 
 fn at_rows(signal: &Polyline, time: &[f64]) -> Vec<f64> {
@@ -145,8 +145,9 @@ impl MissingMoment {
             (MomentChannel::WindFrom, &record.wind_from),
             (MomentChannel::Sway, &record.sway),
         ];
-        channels
-            .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
+        channels.extend(
+            signals.into_iter().filter_map(|(channel, signal)| Some((channel, at_rows(signal.as_ref()?, &time)))),
+        );
 
         let still = vec![[0.0; 2]; count];
         let responses: Vec<HeadingRows> = explanations
@@ -154,26 +155,26 @@ impl MissingMoment {
             .map(|model| HeadingRows { heading: model.heading.clone(), forced: still.clone() })
             .collect();
         let varies = spread(&moment) > MIN_VARIANCE * count as f64;
-        let mut panels: Vec<Panel> = channels
+        let mut channel_moments: Vec<MomentOverChannel> = channels
             .iter()
-            .filter_map(|(over, x)| {
+            .filter_map(|(channel, x)| {
                 let curve = MomentCurve::new(&rows, gain, &column, x, &responses)?;
                 let share = varies.then(|| (1.0 - curve.walk / (intensity * unit)).max(0.0));
                 let inside = match curve.contains_zero() {
                     true => Vec::new(),
                     false => (0..responses.len()).filter(|&k| curve.contains(&curve.explanations[k])).collect(),
                 };
-                Some(Panel { over: *over, curve, share, inside })
+                Some(MomentOverChannel { channel: *channel, curve, share, inside })
             })
             .collect();
-        let rank = |panel: &Panel| (panel.curve.contains_zero(), panel.curve.deviance);
-        panels.sort_by(|a, b| {
+        let rank = |moment: &MomentOverChannel| (moment.curve.contains_zero(), moment.curve.deviance);
+        channel_moments.sort_by(|a, b| {
             let ((a, first), (b, second)) = (rank(a), rank(b));
             a.cmp(&b).then(first.total_cmp(&second))
         });
         Some(Self {
             sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
-            explained: responses
+            explanation_moments: responses
                 .iter()
                 .map(|response| filter.smoothed(response).iter().map(|state| state[2]).collect())
                 .collect(),
@@ -181,11 +182,11 @@ impl MissingMoment {
             moment,
             channels,
             explanations,
-            panels,
+            channel_moments,
         })
     }
 
-    /// Ends of the 95 % interval of a row, rad of rudder.
+    /// Ends of the 95 % interval of the moment at a row, rad of rudder.
     pub fn interval(&self, row: usize) -> [f64; 2] {
         let half = 1.96 * self.sd[row];
         [self.moment[row] - half, self.moment[row] + half]

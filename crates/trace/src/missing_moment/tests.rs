@@ -98,10 +98,10 @@ fn no_moment_is_missing_from_the_true_base() {
         let holds = |row: &usize| missing.interval(*row)[0] <= 0.0 && 0.0 <= missing.interval(*row)[1];
         inside += (0..missing.time.len()).filter(holds).count();
         all += missing.time.len();
-        assert_eq!(missing.panels.len(), 3);
-        shown += missing.panels.iter().filter(|panel| !panel.curve.contains_zero()).count();
+        assert_eq!(missing.channel_moments.len(), 3);
+        shown += missing.channel_moments.iter().filter(|moment| !moment.curve.contains_zero()).count();
     }
-    assert!(10 * inside >= 9 * all && shown <= 2, "{inside} of {all} rows, {shown} of 60 panels");
+    assert!(10 * inside >= 9 * all && shown <= 2, "{inside} of {all} rows, {shown} of 60 curves");
 }
 
 /// A course-unstable base on a long record: the smoothed heading follows the record, and a step of the moment is found.
@@ -140,22 +140,22 @@ fn cubic_damping_has_its_shape() {
     let damped = ship(vec![(listed_effect("nonlinear_damping", "r³"), vec![CUBE])]);
     let record = PreparedRecord::unaveraged(&record(&damped, TrialPlan::default()));
     let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
-    let panel = &missing.panels[0];
+    let over_yaw_rate = &missing.channel_moments[0];
     assert_eq!(
-        panel.over,
+        over_yaw_rate.channel,
         MomentChannel::YawRate,
         "{:?}",
-        missing.panels.iter().map(|p| (p.over, p.share)).collect::<Vec<_>>()
+        missing.channel_moments.iter().map(|p| (p.channel, p.share)).collect::<Vec<_>>()
     );
-    assert!(panel.share.is_some_and(|share| share > 0.8), "{:?}", panel.share);
-    assert!(!panel.curve.contains_zero());
+    assert!(over_yaw_rate.share.is_some_and(|share| share > 0.8), "{:?}", over_yaw_rate.share);
+    assert!(!over_yaw_rate.curve.contains_zero());
     // r' = … − c r³ equals the effect of a rudder angle of −c r³ T/K.
     let per = CUBE / BASE[1];
     let rates = &missing.channels[0].1;
     let mean = rates.iter().map(|r| -per * r.powi(3)).sum::<f64>() / rates.len() as f64;
-    let truth: Vec<f64> = panel.curve.x.iter().map(|r| -per * r.powi(3) - mean).collect();
-    assert!(panel.curve.contains(&truth));
-    let (x, moment) = (&panel.curve.x, &panel.curve.moment);
+    let truth: Vec<f64> = over_yaw_rate.curve.x.iter().map(|r| -per * r.powi(3) - mean).collect();
+    assert!(over_yaw_rate.curve.contains(&truth));
+    let (x, moment) = (&over_yaw_rate.curve.x, &over_yaw_rate.curve.moment);
     let at = |r: f64| {
         let place = (1..x.len()).find(|&k| x[k] >= r).unwrap_or(x.len() - 1);
         moment[place - 1] + (moment[place] - moment[place - 1]) * (r - x[place - 1]) / (x[place] - x[place - 1])

@@ -14,7 +14,7 @@ fn record(time: &[f64]) -> PreparedRecord {
 fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatrix<f64> {
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
-    if let Some((kind @ CorrelatedNoise::Compass(_), level)) = colour.correlated {
+    if let Some((kind @ CorrelatedNoise::CompassError(_), level)) = colour.correlated {
         let tau = kind.correlation_time(longest).expect("an error that lasts");
         total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
     } else if let Some((kind, level)) = colour.correlated {
@@ -22,13 +22,13 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
         let tau = kind.correlation_time(longest).unwrap_or(f64::NAN);
         let impulse = |a: f64, t: f64| match kind {
-            CorrelatedNoise::White => faded(a, t),
+            CorrelatedNoise::WhiteMoment => faded(a, t),
             CorrelatedNoise::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
             _ => (t - faded(a, t)) / a,
         };
         let white = 3.0 / longest.powi(3);
         let intensity = match kind {
-            CorrelatedNoise::White => white,
+            CorrelatedNoise::WhiteMoment => white,
             CorrelatedNoise::OrnsteinUhlenbeck(_) => white / (tau * tau),
             _ => 20.0 / longest.powi(5),
         };
@@ -72,22 +72,22 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let a = 0.08;
         let noise = RecordNoise::new(&record, a, longest, 1);
         let colours = [
-            NoiseColour { correlated: Some((CorrelatedNoise::White, 50.0)), waves: None },
-            NoiseColour { correlated: Some((CorrelatedNoise::Walk, 400.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::WhiteMoment, 50.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::WalkMoment, 400.0)), waves: None },
             NoiseColour { correlated: Some((CorrelatedNoise::OrnsteinUhlenbeck(2), 80.0)), waves: None },
-            NoiseColour { correlated: Some((CorrelatedNoise::Compass(3), 9.0)), waves: None },
-            NoiseColour { correlated: Some((CorrelatedNoise::Compass(2), 2.0)), waves: Some(waves) },
+            NoiseColour { correlated: Some((CorrelatedNoise::CompassError(3), 9.0)), waves: None },
+            NoiseColour { correlated: Some((CorrelatedNoise::CompassError(2), 2.0)), waves: Some(waves) },
             NoiseColour { correlated: None, waves: Some(waves) },
-            NoiseColour { correlated: Some((CorrelatedNoise::Walk, 100.0)), waves: Some(waves) },
+            NoiseColour { correlated: Some((CorrelatedNoise::WalkMoment, 100.0)), waves: Some(waves) },
         ];
         for colour in colours {
             let dense = covariance(&time, a, &colour, longest).cholesky().expect("positive definite");
             let whitener = noise.whitener(&colour);
             let log_determinant = 2.0 * dense.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
             assert!(
-                (whitener.log_variance - log_determinant).abs() < 2e-3 * log_determinant.abs().max(1.0),
+                (whitener.log_determinant - log_determinant).abs() < 2e-3 * log_determinant.abs().max(1.0),
                 "{colour:?}: {} is not {log_determinant}",
-                whitener.log_variance
+                whitener.log_determinant
             );
             let y = DVector::from_fn(time.len(), |i, _| (0.7 * i as f64).sin() + 0.1 * i as f64);
             let mut white: Vec<f64> = y.iter().copied().collect();
@@ -107,12 +107,14 @@ fn rows_count_by_their_readings() {
     record.readings.fill(4);
     record.readings[7] = 1;
     let noise = RecordNoise::new(&record, 0.1, 19.0, 4);
-    for colour in [NoiseColour::WHITE, NoiseColour { correlated: Some((CorrelatedNoise::White, 1e-12)), waves: None }] {
+    for colour in
+        [NoiseColour::WHITE, NoiseColour { correlated: Some((CorrelatedNoise::WhiteMoment, 1e-12)), waves: None }]
+    {
         let whitener = noise.whitener(&colour);
         let mut column = vec![1.0; 20];
         whitener.apply(&mut [&mut column]);
         assert!((column[7] - 0.5).abs() < 1e-9 && (column[8] - 1.0).abs() < 1e-9, "{colour:?}: {column:?}");
-        assert!((whitener.log_variance - 4f64.ln()).abs() < 1e-9);
+        assert!((whitener.log_determinant - 4f64.ln()).abs() < 1e-9);
     }
 }
 
@@ -122,5 +124,5 @@ fn white_noise_is_left_alone() {
     let whitener = RecordNoise::new(&record(&time), 0.1, 19.0, 1).whitener(&NoiseColour::WHITE);
     let mut column: Vec<f64> = time.clone();
     whitener.apply(&mut [&mut column]);
-    assert_eq!((column, whitener.log_variance), (time, 0.0));
+    assert_eq!((column, whitener.log_determinant), (time, 0.0));
 }

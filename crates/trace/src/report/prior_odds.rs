@@ -4,7 +4,7 @@ use super::TraceParts;
 use crate::candidates::PRIOR_PROBABILITY;
 use crate::model::TermName;
 
-/// Factors of the prior odds.
+/// Factors by which the prior odds are multiplied.
 pub const PRIOR_ODDS_FACTORS: [f64; 5] = [0.1, 1.0 / 3.0, 1.0, 3.0, 10.0];
 
 /// Probability of a single effect from its log evidence ratio, with its prior odds multiplied by a factor.

@@ -3,15 +3,16 @@
 //! −2 log p = (n − p) log s² + RSS/s² − (n − p) + Σ log S + log det(XᵀV⁻¹X) − Σ log |x|² + Σ penalties, with
 //! s² = RSS/(n − p) or its lower bound. X has the columns x of the p integrated unknowns: base, initial states and
 //! restarts behind gaps; |x| is the norm under white noise. The penalty of a coefficient of an effect or a shape is
-//! max(log n, log(1 + t²)) + 1 with its sequential t value. The penalty of a shape is twice the logarithm of the number
-//! of places or forms, records and classes among which it was chosen; that of a law is log n per parameter.
+//! max(log n, log(1 + t²)) + 1 with its sequential t value. The penalty of a shape is twice the logarithm of the
+//! product of the numbers of places (or forms), records and classes among which it was chosen; that of a law is log n
+//! per parameter.
 //!
 //! Sources: Schwarz (1978); Harvey (1989) for the marginal likelihood with the regression integrated out.
 
 use estimation::column::dot;
 
 use crate::linear::{HeadingSensitivities, Linearisation};
-use crate::weights::RecordWhitening;
+use crate::noise_law::RecordWhitening;
 
 /// Minimum share of the square of a usable column that is linearly independent of the columns before.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-7;
@@ -30,7 +31,7 @@ pub struct LinearisedStructure {
     pub prior: Vec<(f64, f64)>,
     /// Distance of the penalised coefficients from neutral.
     pub departures_from_neutral: Vec<f64>,
-    /// Lower bound of the white-noise variance of a row, in units of the variance of the weights.
+    /// Lower bound of the white-noise variance of a row, in units of the variance of the whitening.
     pub min_variance: f64,
 }
 
@@ -100,10 +101,15 @@ struct Extension {
 }
 
 impl WhitenedStructure {
-    /// Structure under a law with `law_freedom` parameters; `None` if its columns are dependent.
-    pub fn new(structure: &LinearisedStructure, weights: &RecordWhitening, law_freedom: usize) -> Option<Self> {
+    /// Structure under a law with `law_parameter_count` parameters; `None` if its columns are dependent.
+    pub fn new(
+        structure: &LinearisedStructure,
+        whitening: &RecordWhitening,
+        law_parameter_count: usize,
+    ) -> Option<Self> {
         let blocks = structure.linear.blocks.iter().enumerate();
-        let blocks: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.whitened(record, weights)).collect();
+        let blocks: Vec<HeadingSensitivities> =
+            blocks.map(|(record, block)| block.whitened(record, whitening)).collect();
         let count = structure.linear.unknowns;
         let (mut matrix, mut gradient, mut square) = (vec![vec![0.0; count]; count], vec![0.0; count], 0.0);
         for block in &blocks {
@@ -124,13 +130,13 @@ impl WhitenedStructure {
         let solution = solve(&factor, &gradient, &[]);
         let rows = structure.rows() as f64;
         let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
-        let weights_rows = weights.whiteners.iter().zip(&weights.scale).zip(&blocks);
-        let log_variance: f64 = weights_rows
-            .map(|((whitener, scale), block)| whitener.log_variance - 2.0 * block.residual.len() as f64 * scale.ln())
+        let records = whitening.whiteners.iter().zip(&whitening.scale).zip(&blocks);
+        let log_variance: f64 = records
+            .map(|((whitener, scale), block)| whitener.log_determinant - 2.0 * block.residual.len() as f64 * scale.ln())
             .sum();
-        let squares = structure.squares(&weights.scale);
+        let squares = structure.squares(&whitening.scale);
         let volume: f64 = (0..structure.integrated).map(|k| 2.0 * factor[k][k].ln() - squares[k].ln()).sum();
-        let fixed = log_variance + volume + law_freedom as f64 * log_n;
+        let fixed = log_variance + volume + law_parameter_count as f64 * log_n;
         let (t_values, min_variance) = (Vec::new(), structure.min_variance);
         square -= dot(&solution, &solution);
         let mut all = Self { blocks, factor, solution, t_values, square, fixed, freedom, log_n, min_variance };
@@ -228,7 +234,7 @@ impl WhitenedStructure {
         step
     }
 
-    /// Standard deviation of the white noise of a row, in units of the standard deviation of the weights.
+    /// Standard deviation of the white noise of a row, in units of the standard deviation of the whitening.
     pub fn sd(&self) -> f64 {
         (self.square / self.freedom).sqrt()
     }

@@ -7,7 +7,7 @@ use document::trace::Dependence;
 
 use super::motion::PredictedMotion;
 
-/// Signal of the ship.
+/// Signal of the predicted motion on which a moment depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShipSignal {
     /// Heading ψ.
@@ -26,7 +26,7 @@ impl ShipSignal {
         match self {
             Self::Heading => &motion.heading,
             Self::Way => &motion.way,
-            Self::YawRate => &motion.rate,
+            Self::YawRate => &motion.yaw_rate,
             Self::Rudder => &motion.rudder,
         }
     }
@@ -35,7 +35,7 @@ impl ShipSignal {
     pub fn dependence(self) -> Dependence {
         match self {
             Self::Heading => Dependence::Heading,
-            Self::Way => Dependence::Way,
+            Self::Way => Dependence::LateralDistance,
             Self::YawRate => Dependence::YawRate,
             Self::Rudder => Dependence::Rudder,
         }
@@ -117,13 +117,13 @@ pub enum Shape {
     /// Delay: δ(t − τ) − δ.
     Delay(f64),
     /// δ after a first-order lag.
-    RudderMemory(f64),
+    LaggedRudder(f64),
     /// r after a first-order lag.
-    RateMemory(f64),
+    LaggedYawRate(f64),
     /// q δ and q r, with q = r² after a first-order lag.
-    RateSquareMemory(f64),
+    LaggedSquaredYawRate(f64),
     /// q δ and q r, with q = |δ| after a first-order lag.
-    RudderSizeMemory(f64),
+    LaggedRudderMagnitude(f64),
     /// Hysteresis: δ with the sign of the last change of |δ|.
     Hysteresis,
     /// t or t².
@@ -139,22 +139,22 @@ pub enum Shape {
     /// δ from an instant on: change of K.
     GainChange(f64),
     /// r from an instant on: change of T.
-    TimeChange(f64),
+    TimeConstantChange(f64),
     /// δ' from an instant on: change of the delay.
     DelayChange(f64),
     /// t − t₀ from an instant on.
-    Bend(f64),
+    TrendFrom(f64),
     /// Box: instant, duration.
     Pulse(f64, f64),
     /// cos² pulse: instant, duration.
     Squall(f64, f64),
-    /// Rise from zero to one: instant, duration.
+    /// Linear rise from zero to one: instant, duration.
     Ramp(f64, f64),
-    /// Cosine and sine.
-    Period(f64),
-    /// Cosine and sine with two harmonics.
+    /// Cosine and sine: frequency.
+    Sinusoid(f64),
+    /// Cosine and sine with their second and third harmonics: frequency.
     Harmonics(f64),
-    /// Cosine and sine of linearly changing frequency: initial, final.
+    /// Cosine and sine of linearly changing frequency: initial and final frequency.
     Chirp(f64, f64),
 }
 
@@ -166,8 +166,8 @@ impl Shape {
     pub fn dependence(&self) -> Dependence {
         match self {
             Self::Powers(dependence, ..) => *dependence,
-            Self::Delay(_) | Self::RudderMemory(_) | Self::RateMemory(_) => Dependence::History,
-            Self::RateSquareMemory(_) | Self::RudderSizeMemory(_) | Self::Hysteresis => Dependence::History,
+            Self::Delay(_) | Self::LaggedRudder(_) | Self::LaggedYawRate(_) => Dependence::History,
+            Self::LaggedSquaredYawRate(_) | Self::LaggedRudderMagnitude(_) | Self::Hysteresis => Dependence::History,
             Self::HeadingTrend => Dependence::Heading,
             _ => Dependence::Time,
         }
@@ -185,10 +185,10 @@ impl Shape {
             Self::ResponseTrend => 7,
             Self::Trend(_) => 8,
             Self::Step(_) => 9,
-            Self::ResponseChange(_) | Self::GainChange(_) | Self::TimeChange(_) | Self::DelayChange(_) => 10,
-            Self::Bend(_) | Self::Ramp(..) => 11,
+            Self::ResponseChange(_) | Self::GainChange(_) | Self::TimeConstantChange(_) | Self::DelayChange(_) => 10,
+            Self::TrendFrom(_) | Self::Ramp(..) => 11,
             Self::Pulse(..) | Self::Squall(..) => 12,
-            Self::Period(_) | Self::Harmonics(_) | Self::Chirp(..) => 13,
+            Self::Sinusoid(_) | Self::Harmonics(_) | Self::Chirp(..) => 13,
             _ => self.dependence() as usize,
         }
     }
@@ -201,8 +201,9 @@ impl Shape {
         let t = |row: usize| (time[row] - start) / duration;
         // An instant is smoothed over one row.
         let after = |row: usize, at: f64| ((time[row] - start - at) / motion.record.spacing + 0.5).clamp(0.0, 1.0);
-        let (rudder, rate) = (&motion.rudder, &motion.rate);
-        let both = |q: &dyn Fn(usize) -> f64| vec![rows(&|row| q(row) * rudder[row]), rows(&|row| q(row) * rate[row])];
+        let (rudder, yaw_rate) = (&motion.rudder, &motion.yaw_rate);
+        let both =
+            |q: &dyn Fn(usize) -> f64| vec![rows(&|row| q(row) * rudder[row]), rows(&|row| q(row) * yaw_rate[row])];
         let wave = |phase: &dyn Fn(f64) -> f64| [f64::cos, f64::sin].map(|wave| rows(&|row| wave(phase(t(row)))));
         match *self {
             Self::Powers(_, (signal, power), factor) => {
@@ -211,15 +212,15 @@ impl Shape {
                 vec![rows(&|row| power.at(signal.values(motion)[row]) * factor(row))]
             }
             Self::Delay(lag) => vec![rows(&|row| motion.record.rudder.value_at(time[row] - lag) - rudder[row])],
-            Self::RudderMemory(lag) => vec![motion.lagged(|row| rudder[row], lag)],
-            Self::RateMemory(lag) => vec![motion.lagged(|row| rate[row], lag)],
-            Self::RateSquareMemory(lag) => {
-                let memory = motion.lagged(|row| rate[row].powi(2), lag);
-                both(&|row| memory[row])
+            Self::LaggedRudder(lag) => vec![motion.lagged(|row| rudder[row], lag)],
+            Self::LaggedYawRate(lag) => vec![motion.lagged(|row| yaw_rate[row], lag)],
+            Self::LaggedSquaredYawRate(lag) => {
+                let lagged = motion.lagged(|row| yaw_rate[row].powi(2), lag);
+                both(&|row| lagged[row])
             }
-            Self::RudderSizeMemory(lag) => {
-                let memory = motion.lagged(|row| rudder[row].abs(), lag);
-                both(&|row| memory[row])
+            Self::LaggedRudderMagnitude(lag) => {
+                let lagged = motion.lagged(|row| rudder[row].abs(), lag);
+                both(&|row| lagged[row])
             }
             Self::Hysteresis => vec![hysteresis(motion)],
             Self::Trend(power) => vec![rows(&|row| power.at(t(row)))],
@@ -228,9 +229,9 @@ impl Shape {
             Self::Step(at) => vec![rows(&|row| after(row, at))],
             Self::ResponseChange(at) => both(&|row| after(row, at)),
             Self::GainChange(at) => vec![rows(&|row| after(row, at) * rudder[row])],
-            Self::TimeChange(at) => vec![rows(&|row| after(row, at) * rate[row])],
+            Self::TimeConstantChange(at) => vec![rows(&|row| after(row, at) * yaw_rate[row])],
             Self::DelayChange(at) => vec![rows(&|row| after(row, at) * motion.rudder_rate[row])],
-            Self::Bend(at) => vec![rows(&|row| (time[row] - start - at).max(0.0) / duration)],
+            Self::TrendFrom(at) => vec![rows(&|row| (time[row] - start - at).max(0.0) / duration)],
             Self::Pulse(at, own_duration) => vec![rows(&|row| after(row, at) - after(row, at + own_duration))],
             Self::Squall(at, own_duration) => vec![rows(&|row| {
                 let share = (time[row] - start - at) / own_duration - 0.5;
@@ -239,7 +240,7 @@ impl Shape {
             Self::Ramp(at, own_duration) => {
                 vec![rows(&|row| ((time[row] - start - at) / own_duration).clamp(0.0, 1.0))]
             }
-            Self::Period(cycles) => wave(&|t| TAU * cycles * t).to_vec(),
+            Self::Sinusoid(cycles) => wave(&|t| TAU * cycles * t).to_vec(),
             Self::Harmonics(cycles) => {
                 (1..=3).flat_map(|harmonic| wave(&|t| TAU * f64::from(harmonic) * cycles * t)).collect()
             }
@@ -247,45 +248,46 @@ impl Shape {
         }
     }
 
-    /// Continuous parameters with the steps of their refinement, for a record of `duration` (s).
+    /// Parameters that a search refines, with their initial steps, for a record of `duration` (s).
     fn places(&mut self, duration: f64) -> Vec<(&mut f64, f64)> {
         match self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => vec![(at, 0.01 * duration)],
-            Self::TimeChange(at) | Self::DelayChange(at) => vec![(at, 0.01 * duration)],
+            Self::TimeConstantChange(at) | Self::DelayChange(at) => vec![(at, 0.01 * duration)],
             Self::Pulse(at, own_duration) => vec![(at, 0.01 * duration), (own_duration, 0.01 * duration)],
             Self::Squall(at, own_duration) => vec![(at, 0.012 * duration), (own_duration, 0.016 * duration)],
             Self::Ramp(at, own_duration) => vec![(at, 0.02 * duration), (own_duration, 0.03 * duration)],
-            Self::Period(cycles) => vec![(cycles, 0.15)],
+            Self::Sinusoid(cycles) => vec![(cycles, 0.15)],
             Self::Harmonics(cycles) => vec![(cycles, 0.07)],
             Self::Chirp(from, to) => vec![(from, 0.5), (to, 0.5)],
             _ => Vec::new(),
         }
     }
 
-    /// Number of continuous parameters.
+    /// Number of parameters that a search refines: instants, durations and frequencies, but not lags.
     pub fn parameter_count(&self) -> usize {
         self.clone().places(1.0).len()
     }
 
-    /// Shape with one continuous parameter moved by a share of the step; `None` if it leaves its range for a record of
-    /// this duration and row spacing, s.
+    /// Shape with a refined parameter moved by a share of its step; `None` if it leaves its range for a record of this
+    /// duration and row spacing, s.
     pub fn moved(&self, place: usize, share: f64, [duration, spacing]: [f64; 2]) -> Option<Self> {
         let mut moved = *self;
         let (value, step) = moved.places(duration).into_iter().nth(place)?;
         *value += share * step;
         let min = match moved {
-            Self::Period(_) | Self::Harmonics(_) | Self::Chirp(..) => 0.8,
+            Self::Sinusoid(_) | Self::Harmonics(_) | Self::Chirp(..) => 0.8,
             _ if place == 1 => 2.0 * spacing,
             _ => f64::NEG_INFINITY,
         };
         (*moved.places(duration)[place].0 >= min).then_some(moved)
     }
 
-    /// Start and end of the action of a shape, s from the start of the record; `None` for a shape without instants.
+    /// Start and end of the action of a shape (of the rise for a ramp), s from the start of the record; `None` for a
+    /// shape without instants.
     pub fn span(&self, duration: f64) -> Option<[f64; 2]> {
         match *self {
             Self::Step(at) | Self::ResponseChange(at) | Self::GainChange(at) => Some([at, duration]),
-            Self::TimeChange(at) | Self::DelayChange(at) | Self::Bend(at) => Some([at, duration]),
+            Self::TimeConstantChange(at) | Self::DelayChange(at) | Self::TrendFrom(at) => Some([at, duration]),
             Self::Pulse(at, own_duration) | Self::Squall(at, own_duration) | Self::Ramp(at, own_duration) => {
                 Some([at, at + own_duration])
             }
@@ -309,10 +311,10 @@ impl Shape {
                 format!("moment with {} {}", power.notation(signal.names()[0]), second.notation(other.names()[0]))
             }
             Self::Delay(lag) => format!("rudder delayed by {lag:.1} s"),
-            Self::RudderMemory(lag) => format!("rudder after a lag of {lag:.0} s"),
-            Self::RateMemory(lag) => format!("yaw rate after a lag of {lag:.0} s"),
-            Self::RateSquareMemory(lag) => format!("K and T that vary with r² after a lag of {lag:.0} s"),
-            Self::RudderSizeMemory(lag) => format!("K and T that vary with |δ| after a lag of {lag:.0} s"),
+            Self::LaggedRudder(lag) => format!("rudder after a lag of {lag:.0} s"),
+            Self::LaggedYawRate(lag) => format!("yaw rate after a lag of {lag:.0} s"),
+            Self::LaggedSquaredYawRate(lag) => format!("K and T that vary with r² after a lag of {lag:.0} s"),
+            Self::LaggedRudderMagnitude(lag) => format!("K and T that vary with |δ| after a lag of {lag:.0} s"),
             Self::Hysteresis => String::from("K that differs between rudder going out and coming back"),
             Self::Trend(SignalFunction::Linear) => String::from("moment that grows with time"),
             Self::Trend(_) => String::from("moment that grows with the square of time"),
@@ -321,13 +323,13 @@ impl Shape {
             Self::Step(from) => format!("moment from {} on", at(from)),
             Self::ResponseChange(from) => format!("K and T that change at {}", at(from)),
             Self::GainChange(from) => format!("K that changes at {}", at(from)),
-            Self::TimeChange(from) => format!("T that changes at {}", at(from)),
+            Self::TimeConstantChange(from) => format!("T that changes at {}", at(from)),
             Self::DelayChange(from) => format!("rudder delay that changes at {}", at(from)),
-            Self::Bend(from) => format!("moment that grows from {} on", at(from)),
+            Self::TrendFrom(from) => format!("moment that grows from {} on", at(from)),
             Self::Pulse(from, own_duration) => format!("moment {}", span(from, own_duration)),
             Self::Squall(from, own_duration) => format!("squall {}", span(from, own_duration)),
             Self::Ramp(from, own_duration) => format!("moment that rises {}", span(from, own_duration)),
-            Self::Period(cycles) => format!("moment with a period of {}", period(cycles)),
+            Self::Sinusoid(cycles) => format!("moment with a period of {}", period(cycles)),
             Self::Harmonics(cycles) => format!("moment with a period of {} and its harmonics", period(cycles)),
             Self::Chirp(from, to) => format!("moment whose period runs from {} to {}", period(from), period(to)),
         }

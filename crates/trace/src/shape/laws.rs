@@ -1,7 +1,7 @@
 //! Random laws that compete with the shapes: white heading noise alone, or together with a random moment, a correlated
 //! compass error or waves.
 //!
-//! The size of a moment is a rudder angle over the standard deviation of a heading, in equal units.
+//! The size of a moment is its rudder angle over the standard deviation of the white heading noise, both in rad.
 
 use ship::narrow_band::NarrowBand;
 
@@ -25,7 +25,7 @@ pub struct RandomLaw {
     /// Colour, in units of the white noise of a row.
     pub colour: NoiseColour,
     /// Number of parameters besides the white noise.
-    pub freedom: usize,
+    pub parameter_count: usize,
     /// Size over the standard deviation of the white noise: rudder angle of a moment, or heading error.
     pub size: f64,
 }
@@ -34,7 +34,7 @@ impl RandomLaw {
     /// Law of white noise alone, or with the `waves` of the noise law; it has no further parameter.
     fn white(waves: Option<NarrowBand>) -> Self {
         let colour = NoiseColour { correlated: None, waves };
-        Self { colour, freedom: 0, size: 0.0 }
+        Self { colour, parameter_count: 0, size: 0.0 }
     }
 
     /// Correlated noise of a size, for a ship of this K/T (1/s²) and a longest record of `longest` seconds.
@@ -42,12 +42,12 @@ impl RandomLaw {
         let moment = (gain * size).powi(2);
         let level = match (kind, kind.correlation_time(longest)) {
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => 2.0 * moment / time / kind.intensity(longest),
-            (CorrelatedNoise::White | CorrelatedNoise::Walk, _) => moment / kind.intensity(longest),
+            (CorrelatedNoise::WhiteMoment | CorrelatedNoise::WalkMoment, _) => moment / kind.intensity(longest),
             (CorrelatedNoise::SmoothMoment(_), _) => moment,
             _ => size * size,
         };
         let colour = NoiseColour { correlated: Some((kind, level)), waves };
-        Self { colour, freedom: kind.parameter_count(), size }
+        Self { colour, parameter_count: kind.parameter_count(), size }
     }
 
     /// `true` if it includes a random moment.
@@ -69,13 +69,13 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
         sizes.map(|size| RandomLaw::correlated(kind, size, gain, longest, waves)).collect()
     };
     let mut laws = vec![RandomLaw::white(waves)];
-    laws.extend(with_sizes(CorrelatedNoise::White, &mut decades(-1.0, 2.0, 0.5)));
-    laws.extend(with_sizes(CorrelatedNoise::Walk, &mut decades(-2.0, 2.0, 0.25)));
+    laws.extend(with_sizes(CorrelatedNoise::WhiteMoment, &mut decades(-1.0, 2.0, 0.5)));
+    laws.extend(with_sizes(CorrelatedNoise::WalkMoment, &mut decades(-2.0, 2.0, 0.25)));
     for number in 0..GUST_CORRELATION_SHARES.len() {
         laws.extend(with_sizes(CorrelatedNoise::OrnsteinUhlenbeck(number), &mut decades(-0.5, 2.0, 0.5)));
     }
     for number in 0..COMPASS_CORRELATION_SHARES.len() {
-        laws.extend(with_sizes(CorrelatedNoise::Compass(number), &mut decades(-1.0, 1.5, 0.5)));
+        laws.extend(with_sizes(CorrelatedNoise::CompassError(number), &mut decades(-1.0, 1.5, 0.5)));
     }
     if waves.is_none() {
         for period in WAVE_PERIODS.into_iter().filter(|period| *period > MIN_ROWS_PER_WAVE * spacing) {
@@ -83,7 +83,7 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
                 let frequency = std::f64::consts::TAU / period;
                 let sea = NarrowBand { sd, frequency, damping: WAVE_DAMPING };
                 let colour = NoiseColour { correlated: None, waves: Some(sea) };
-                RandomLaw { colour, freedom: colour.parameter_count(), size: sd }
+                RandomLaw { colour, parameter_count: colour.parameter_count(), size: sd }
             }));
         }
     }
@@ -109,8 +109,8 @@ pub fn screening_laws(laws: &[RandomLaw], best: usize) -> Vec<usize> {
             && kind(law) == kind(&laws[best])
             && law.colour.waves.map(|sea| sea.frequency) == laws[best].colour.waves.map(|sea| sea.frequency)
             && is_step_below(laws[best].size, law.size, 0.5);
-        let is_walk = kind(law) == Some(CorrelatedNoise::Walk) && is_step_below(1e9, law.size, 1.0);
-        let is_compass = kind(law) == Some(CorrelatedNoise::Compass(1)) && (law.size - 1.0).abs() < 0.01;
+        let is_walk = kind(law) == Some(CorrelatedNoise::WalkMoment) && is_step_below(1e9, law.size, 1.0);
+        let is_compass = kind(law) == Some(CorrelatedNoise::CompassError(1)) && (law.size - 1.0).abs() < 0.01;
         (place == 0 || place == best || is_weaker || is_walk || is_compass).then_some(place)
     };
     laws.iter().enumerate().filter_map(is_screened).collect()

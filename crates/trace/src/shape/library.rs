@@ -4,13 +4,13 @@ use document::trace::Dependence;
 
 use super::dictionary::{Shape, ShipSignal, SignalFunction};
 
-/// Delays of the rudder, in time units of the ship.
+/// Delays of the rudder, in units of T/16.
 const DELAYS: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// Time constants of the lags of a signal, in time units of the ship.
-const MEMORIES: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
+/// Time constants of the lags of a signal, in units of T/16.
+const LAGS: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
-/// Number of intervals between the instants of a record at which a change is tried.
+/// Number of intervals into which the instants that are tried divide a record.
 const INSTANTS: usize = 48;
 
 /// Durations of transient moments, as shares of the record.
@@ -33,10 +33,11 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
     all.extend([Shape::HeadingTrend, Shape::ResponseTrend].map(|shape| (shape, 1)));
     for k in 2..INSTANTS - 1 {
         let at = duration * k as f64 / INSTANTS as f64;
-        let changes = [Shape::ResponseChange(at), Shape::GainChange(at), Shape::TimeChange(at), Shape::DelayChange(at)];
+        let changes =
+            [Shape::ResponseChange(at), Shape::GainChange(at), Shape::TimeConstantChange(at), Shape::DelayChange(at)];
         all.push((Shape::Step(at), INSTANTS));
         all.extend(changes.map(|shape| (shape, INSTANTS)));
-        all.extend(k.is_multiple_of(3).then_some((Shape::Bend(at), INSTANTS)));
+        all.extend(k.is_multiple_of(3).then_some((Shape::TrendFrom(at), INSTANTS)));
     }
     for own_duration in DURATION_SHARES.map(|share| share * duration) {
         let count = (2.0 * (duration - own_duration) / own_duration) as usize;
@@ -57,7 +58,7 @@ pub fn shapes([duration, spacing]: [f64; 2], unit: f64) -> Vec<(Shape, usize)> {
         (0..=count).map(|k| from + step * k as f64).filter(|cycles| *cycles < max_cycles).collect()
     };
     let periods = grid(1.5, 16.0, 0.33);
-    all.extend(periods.iter().map(|&cycles| (Shape::Period(cycles), periods.len())));
+    all.extend(periods.iter().map(|&cycles| (Shape::Sinusoid(cycles), periods.len())));
     let repeated = grid(2.0, (max_cycles / 3.0).min(10.0), 0.15);
     all.extend(repeated.iter().map(|&cycles| (Shape::Harmonics(cycles), repeated.len())));
     let ends = grid(1.5, 14.0, 1.0);
@@ -80,7 +81,7 @@ fn state_shapes(unit: f64) -> Vec<Shape> {
     let product = |dependence, signal, power, other| {
         Shape::Powers(dependence, (signal, power), Some((other, SignalFunction::Linear)))
     };
-    let (heading, way) = (Dependence::Heading, Dependence::Way);
+    let (heading, way) = (Dependence::Heading, Dependence::LateralDistance);
     all.extend([
         product(Dependence::YawRate, ShipSignal::YawRate, SignalFunction::Linear, ShipSignal::Rudder),
         product(Dependence::Rudder, ShipSignal::YawRate, SignalFunction::Magnitude, ShipSignal::Rudder),
@@ -93,11 +94,11 @@ fn state_shapes(unit: f64) -> Vec<Shape> {
         product(way, ShipSignal::Way, SignalFunction::Linear, ShipSignal::Heading),
     ]);
     all.extend(DELAYS.map(|lag| Shape::Delay(lag * unit)));
-    for lag in MEMORIES.map(|lag| lag * unit) {
-        all.extend([Shape::RudderMemory(lag), Shape::RateSquareMemory(lag), Shape::RudderSizeMemory(lag)]);
+    for lag in LAGS.map(|lag| lag * unit) {
+        all.extend([Shape::LaggedRudder(lag), Shape::LaggedSquaredYawRate(lag), Shape::LaggedRudderMagnitude(lag)]);
     }
     // Short lags of yaw rate and rudder together can represent any moment, so short lags of r are omitted.
-    all.extend(MEMORIES[2..].iter().map(|lag| Shape::RateMemory(lag * unit)));
+    all.extend(LAGS[2..].iter().map(|lag| Shape::LaggedYawRate(lag * unit)));
     all.push(Shape::Hysteresis);
     all
 }

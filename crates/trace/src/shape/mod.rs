@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::fit::{FittedRecords, StructureFit};
 use crate::noise::{CorrelatedNoise, NoiseColour};
-use crate::weights::{NoiseLaw, RecordWhitening};
+use crate::noise_law::{NoiseLaw, RecordWhitening};
 use criterion::{LinearisedStructure, WhitenedStructure};
 use laws::RandomLaw;
 use motion::PredictedMotion;
@@ -28,7 +28,7 @@ use point::StructurePoint;
 use search::ShapeSearch;
 
 pub use dictionary::Shape;
-pub use search::{Candidate, Explanation};
+pub use search::{ShapeCandidate, ShapeExplanation};
 
 /// Minimum significant gain of shapes, nats.
 pub const MIN_GAIN_NATS: f64 = 4.0;
@@ -45,7 +45,7 @@ const MAX_ROUNDS: usize = 3;
 /// Relative change of 1/T below which the updates end.
 const TIME_TOLERANCE: f64 = 0.02;
 
-/// Time unit of the lags over T.
+/// Time unit of the lags, relative to T.
 const UNIT: f64 = 1.0 / 16.0;
 
 /// Maximum T from which the time unit is computed, s.
@@ -55,7 +55,7 @@ const MAX_TIME_S: f64 = 1000.0;
 #[derive(Debug, Clone)]
 pub struct NamedShape {
     /// Shape.
-    pub candidate: Arc<Candidate>,
+    pub candidate: Arc<ShapeCandidate>,
     /// Loss of log likelihood without the shape, nats.
     pub loss: f64,
     /// Root mean square of the moment as a rudder angle, rad.
@@ -65,25 +65,25 @@ pub struct NamedShape {
 /// Minimum loss of a listed shape, relative to the clearest shape.
 const MIN_LOSS_RATIO: f64 = 0.25;
 
-/// Maximum distance, as a share of the record, of a moment that belongs to a change of the ship.
+/// Maximum time, as a share of the record, between a change of the ship and a moment that belongs to it.
 const MAX_DISTANCE_SHARE: f64 = 0.1;
 
 /// Size of a random moment as a rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentSize {
     /// Root mean square over the longest record, rad; for a white moment, of its mean over L/U.
-    pub rudder: f64,
+    pub rudder_rms: f64,
     /// Spectral density of a white moment, rad² s; `None` for other kinds.
-    pub white: Option<f64>,
+    pub white_density: Option<f64>,
 }
 
 /// Shape analysis of the residual of a structure.
 #[derive(Debug, Clone)]
 pub struct ShapeAnalysis {
     /// Best explanation; without shapes if none is significant.
-    pub best: Explanation,
+    pub best: ShapeExplanation,
     /// Equivalent explanations: with no more shapes than the best, and within [`MAX_EQUIVALENT_GAIN_NATS`] of it.
-    pub equivalent: Vec<Explanation>,
+    pub equivalent: Vec<ShapeExplanation>,
     /// Coefficients of every shape of the best explanation, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
     /// Loss of log likelihood without each shape of the best explanation, nats.
@@ -109,7 +109,7 @@ pub struct ShapeAnalysis {
 
 impl ShapeAnalysis {
     /// `true` if the gain of the shapes is significant.
-    pub fn is_located(&self) -> bool {
+    pub fn has_significant_shapes(&self) -> bool {
         self.gain_nats >= MIN_GAIN_NATS
     }
 
@@ -145,7 +145,7 @@ impl ShapeAnalysis {
     /// record.
     pub fn alternatives(&self, span: impl Fn(Option<usize>) -> [f64; 2]) -> Vec<String> {
         let classes =
-            |all: &Explanation| all.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
+            |all: &ShapeExplanation| all.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
         let mut seen = vec![classes(&self.best)];
         let mut all = Vec::new();
         for other in &self.equivalent {
@@ -183,7 +183,7 @@ struct ShapeProblem<'a> {
     motions: Vec<PredictedMotion<'a>>,
     linearised: LinearisedStructure,
     laws: Vec<RandomLaw>,
-    weights: Vec<RecordWhitening>,
+    whitening: Vec<RecordWhitening>,
     structure: Vec<Option<WhitenedStructure>>,
     /// Criterion of the best law without shapes.
     criterion: f64,
@@ -199,18 +199,18 @@ impl<'a> ShapeProblem<'a> {
         let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
         let whitened = |law: &RandomLaw| {
-            let weights = point.weights(&law.colour);
-            (WhitenedStructure::new(&linearised, &weights, law.freedom), weights)
+            let whitening = point.whitening(&law.colour);
+            (WhitenedStructure::new(&linearised, &whitening, law.parameter_count), whitening)
         };
-        let (structure, weights): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
+        let (structure, whitening): (Vec<_>, Vec<_>) = laws.par_iter().map(whitened).unzip();
         let (criterion, law) = search::best_law(&structure)?;
-        Some(Self { point, motions, linearised, laws, weights, structure, criterion, law })
+        Some(Self { point, motions, linearised, laws, whitening, structure, criterion, law })
     }
 
     /// Criterion of the structure without shapes under another law; infinite if its columns are dependent.
     fn criterion_under(&self, law: &RandomLaw) -> f64 {
-        let weights = self.point.weights(&law.colour);
-        let whitened = WhitenedStructure::new(&self.linearised, &weights, law.freedom);
+        let whitening = self.point.whitening(&law.colour);
+        let whitened = WhitenedStructure::new(&self.linearised, &whitening, law.parameter_count);
         whitened.map_or(f64::INFINITY, |structure| structure.criterion())
     }
 
@@ -223,7 +223,7 @@ impl<'a> ShapeProblem<'a> {
         let search = ShapeSearch {
             motions: &self.motions,
             laws: &self.laws,
-            weights: &self.weights,
+            whitening: &self.whitening,
             structure: &self.structure,
             unknowns: self.linearised.linear.unknowns,
         };
@@ -232,7 +232,7 @@ impl<'a> ShapeProblem<'a> {
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
         let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
         if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN_NATS {
-            best = Explanation { shapes: Vec::new(), criterion: self.criterion, law_index: self.law };
+            best = ShapeExplanation { shapes: Vec::new(), criterion: self.criterion, law_index: self.law };
             without.clear();
         }
         tried.retain(|other| {
@@ -262,14 +262,18 @@ impl<'a> ShapeProblem<'a> {
 
     /// Random moment of an explanation; `sd` is the standard deviation of the white noise in units of the white noise
     /// of the records.
-    fn moment(&self, best: &Explanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
+    fn moment(&self, best: &ShapeExplanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
         let law = &self.laws[best.law_index];
         let (kind, _) = law.colour.correlated.filter(|_| law.is_moment())?;
         let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
         Some(match kind {
-            CorrelatedNoise::White => MomentSize { rudder: size / time.sqrt(), white: Some(size * size) },
-            CorrelatedNoise::Walk => MomentSize { rudder: size * (0.5 * longest).sqrt(), white: None },
-            _ => MomentSize { rudder: size, white: None },
+            CorrelatedNoise::WhiteMoment => {
+                MomentSize { rudder_rms: size / time.sqrt(), white_density: Some(size * size) }
+            }
+            CorrelatedNoise::WalkMoment => {
+                MomentSize { rudder_rms: size * (0.5 * longest).sqrt(), white_density: None }
+            }
+            _ => MomentSize { rudder_rms: size, white_density: None },
         })
     }
 }

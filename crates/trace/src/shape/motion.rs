@@ -31,7 +31,7 @@ pub struct PredictedMotion<'a> {
     /// Predicted heading minus the first heading at every row, rad.
     pub heading: Vec<f64>,
     /// Predicted yaw rate at every row, rad/s.
-    pub rate: Vec<f64>,
+    pub yaw_rate: Vec<f64>,
     /// Rudder angle at every row, rad.
     pub rudder: Vec<f64>,
     /// Rudder rate at every row, rad/s.
@@ -56,16 +56,16 @@ impl<'a> PredictedMotion<'a> {
         let recorded = record.replay_signals(&response);
         let mut state = vec![0.0; response.dimension()];
         response.initialise(initial[0], initial[1], &recorded.input(record.time[0], response.dead_time()), &mut state);
-        let (mut heading, mut rate) = (Vec::new(), Vec::new());
+        let (mut heading, mut yaw_rate) = (Vec::new(), Vec::new());
         let step = solver_step(&response, record.spacing, STEPS);
         replay_states(&response, &recorded, &record.time, step, &mut state, |_, state, _| {
             heading.push(state[0]);
-            rate.push(state[1]);
+            yaw_rate.push(state[1]);
         });
         if let Some(predicted) = predicted {
             for row in 0..record.time.len() {
                 heading[row] += interpolated(record, row, |k| predicted[k][0]);
-                rate[row] += interpolated(record, row, |k| predicted[k][1]);
+                yaw_rate[row] += interpolated(record, row, |k| predicted[k][1]);
             }
         }
         let first = heading[0];
@@ -83,7 +83,7 @@ impl<'a> PredictedMotion<'a> {
             rudder_rate: slopes(&record.time, &rudder),
             transitions: intervals().map(|h| Transition::new(theta[0], h)).collect(),
             heading,
-            rate,
+            yaw_rate,
             rudder,
             way,
         }

@@ -4,7 +4,7 @@ use crate::fit::{FittedRecords, StructureFit, prior_deviation, prior_precision};
 use crate::law;
 use crate::linear::HeadingSensitivities;
 use crate::noise::{NoiseColour, RecordNoise};
-use crate::weights::{NoiseLaw, RecordWhitening};
+use crate::noise_law::{NoiseLaw, RecordWhitening};
 
 use super::criterion::LinearisedStructure;
 use super::motion::PredictedMotion;
@@ -36,8 +36,8 @@ impl<'a> StructurePoint<'a> {
         Self { problem, fit, sd, noise: problem.noise_transitions(theta[0]), theta, initial }
     }
 
-    /// Whitening weights under a colour.
-    pub fn weights(&self, colour: &NoiseColour) -> RecordWhitening {
+    /// Whitening under a colour.
+    pub fn whitening(&self, colour: &NoiseColour) -> RecordWhitening {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(colour)).collect();
         RecordWhitening { whiteners, scale: self.sd.iter().map(|sd| sd.recip()).collect() }
     }
@@ -58,7 +58,7 @@ impl<'a> StructurePoint<'a> {
 
     /// Number of fitted entries of θ that belong to the base, and to the terms.
     fn counts(&self) -> [usize; 2] {
-        let base = self.fit.structure.base_count();
+        let base = self.fit.structure.base_parameter_count();
         let fitted = self.fit.structure.fitted_indices();
         let of_base = fitted.iter().filter(|place| **place < base).count();
         [of_base, fitted.len() - of_base]
@@ -102,7 +102,7 @@ impl<'a> StructurePoint<'a> {
         let neutral: Vec<f64> = structure.terms.iter().flat_map(|term| term.neutral()).collect();
         let size = |&place: &usize| match entries[place].prior.is_shape {
             true => 0.0,
-            false => self.theta[place] - neutral[place - structure.base_count()],
+            false => self.theta[place] - neutral[place - structure.base_parameter_count()],
         };
         LinearisedStructure {
             linear,
@@ -146,7 +146,7 @@ impl<'a> StructurePoint<'a> {
 /// Replaces the sensitivity to 1/T by the response to the moment of the predicted yaw rate, which is exact under any
 /// noise.
 fn use_predicted_rate(block: &mut HeadingSensitivities, motion: &PredictedMotion) {
-    let moment: Vec<f64> = motion.rate.iter().map(|rate| -rate / motion.base[1]).collect();
+    let moment: Vec<f64> = motion.yaw_rate.iter().map(|rate| -rate / motion.base[1]).collect();
     let by_inverse_time = block.columns.iter_mut().find(|(unknown, _)| *unknown == 0);
     by_inverse_time.into_iter().for_each(|(_, column)| *column = motion.heading_response(&moment));
 }

@@ -12,9 +12,9 @@ use super::laws::{RandomLaw, screening_laws};
 use super::library::shapes;
 use super::motion::PredictedMotion;
 use crate::linear::{HeadingSensitivities, Linearisation};
-use crate::weights::RecordWhitening;
+use crate::noise_law::RecordWhitening;
 
-/// Number of classes of shapes in the penalty of the choice among them.
+/// Number of classes that the penalty of the choice of a shape assumes; [`Shape::class`] distinguishes 13.
 const CLASSES: f64 = 11.0;
 
 /// Maximum number of shapes.
@@ -34,7 +34,7 @@ const CHUNK: usize = 8;
 
 /// Candidate shape with its heading responses.
 #[derive(Debug, Clone)]
-pub struct Candidate {
+pub struct ShapeCandidate {
     /// Shape.
     pub shape: Shape,
     /// Index of the record in which the shape acts; `None` for all records.
@@ -46,9 +46,9 @@ pub struct Candidate {
 
 /// Explanation of the residual: shapes with a random law.
 #[derive(Debug, Clone)]
-pub struct Explanation {
+pub struct ShapeExplanation {
     /// Shapes.
-    pub shapes: Vec<Arc<Candidate>>,
+    pub shapes: Vec<Arc<ShapeCandidate>>,
     /// Criterion −2 log p + penalties.
     pub criterion: f64,
     /// Index of the random law.
@@ -61,8 +61,8 @@ pub struct ShapeSearch<'a> {
     pub motions: &'a [PredictedMotion<'a>],
     /// Random laws.
     pub laws: &'a [RandomLaw],
-    /// Whitening weights under each law.
-    pub weights: &'a [RecordWhitening],
+    /// Whitening under each law.
+    pub whitening: &'a [RecordWhitening],
     /// Structure under each law; `None` if its columns are dependent.
     pub structure: &'a [Option<WhitenedStructure>],
     /// Number of unknowns of the structure.
@@ -74,7 +74,7 @@ const MIN_RMS: f64 = 1e-12;
 
 impl ShapeSearch<'_> {
     /// Candidate of a shape that acts in all records or in one; `None` if its moment is zero there.
-    fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<Candidate> {
+    fn candidate(&self, shape: Shape, record: Option<usize>, penalty: f64) -> Option<ShapeCandidate> {
         let acting = || self.motions.iter().filter(|motion| record.is_none_or(|record| record == motion.record_index));
         let moments: Vec<(&PredictedMotion, Vec<Vec<f64>>)> =
             acting().map(|motion| (motion, shape.moments(motion))).collect();
@@ -89,11 +89,11 @@ impl ShapeSearch<'_> {
             (size.is_finite() && size > MIN_RMS).then(|| moments.iter().map(response).collect())
         };
         let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<HeadingColumn>>>()?;
-        Some(Candidate { shape, record, penalty, columns })
+        Some(ShapeCandidate { shape, record, penalty, columns })
     }
 
     /// Candidates of all shapes; `unit` (s) is the time unit of the lags.
-    fn library(&self, unit: f64) -> Vec<Arc<Candidate>> {
+    fn library(&self, unit: f64) -> Vec<Arc<ShapeCandidate>> {
         let longest = self.motions.iter().max_by(|a, b| a.span()[1].total_cmp(&b.span()[1]));
         let Some(longest) = longest else { return Vec::new() };
         let all = |motion: &PredictedMotion| shapes([motion.span()[1], motion.record.spacing], unit);
@@ -122,7 +122,7 @@ impl ShapeSearch<'_> {
     }
 
     /// Columns of each candidate, whitened record by record under the law of index `law`.
-    fn white(&self, law: usize, candidates: &[&Candidate]) -> Vec<Vec<HeadingColumn>> {
+    fn white(&self, law: usize, candidates: &[&ShapeCandidate]) -> Vec<Vec<HeadingColumn>> {
         let mut all: Vec<Vec<HeadingColumn>> = candidates.iter().map(|candidate| candidate.columns.clone()).collect();
         let columns = || all.iter().flatten().flatten();
         let mut records: Vec<usize> = columns().map(|(record, _)| *record).collect();
@@ -130,14 +130,14 @@ impl ShapeSearch<'_> {
         records.dedup();
         for record in records {
             let pieces = all.iter_mut().flatten().flatten().filter(|(number, _)| *number == record);
-            self.weights[law].apply(record, &mut pieces.map(|(_, values)| values).collect::<Vec<_>>());
+            self.whitening[law].apply(record, &mut pieces.map(|(_, values)| values).collect::<Vec<_>>());
         }
         all
     }
 
     /// Structure with shapes appended under every law; `None` where its columns are dependent.
-    fn extended(&self, shapes: &[Arc<Candidate>]) -> Vec<Option<WhitenedStructure>> {
-        let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
+    fn extended(&self, shapes: &[Arc<ShapeCandidate>]) -> Vec<Option<WhitenedStructure>> {
+        let all: Vec<&ShapeCandidate> = shapes.iter().map(Arc::as_ref).collect();
         let extend = |(law, structure): (usize, &Option<WhitenedStructure>)| {
             structure.as_ref()?.extended(&self.white(law, &all).concat())
         };
@@ -146,7 +146,7 @@ impl ShapeSearch<'_> {
 
     /// Criterion and index of the law under which a structure with `shapes` appended is best; `structures` are the
     /// structure before, under every law.
-    fn best_law(&self, structures: &[Option<WhitenedStructure>], shapes: &[&Candidate]) -> (f64, usize) {
+    fn best_law(&self, structures: &[Option<WhitenedStructure>], shapes: &[&ShapeCandidate]) -> (f64, usize) {
         let penalty: f64 = shapes.iter().map(|shape| shape.penalty).sum();
         let criterion = |(law, structure): (usize, &Option<WhitenedStructure>)| {
             let criterion = structure.as_ref()?.criterion_with(&self.white(law, shapes).concat());
@@ -156,9 +156,9 @@ impl ShapeSearch<'_> {
     }
 
     /// Products of all candidates with the structure, under some laws.
-    fn products(&self, laws: &[usize], library: &[Arc<Candidate>]) -> Vec<Vec<GramProducts>> {
-        let products = |chunk: &[Arc<Candidate>]| {
-            let candidates: Vec<&Candidate> = chunk.iter().map(Arc::as_ref).collect();
+    fn products(&self, laws: &[usize], library: &[Arc<ShapeCandidate>]) -> Vec<Vec<GramProducts>> {
+        let products = |chunk: &[Arc<ShapeCandidate>]| {
+            let candidates: Vec<&ShapeCandidate> = chunk.iter().map(Arc::as_ref).collect();
             let mut all = vec![Vec::with_capacity(laws.len()); chunk.len()];
             for &law in laws {
                 let Some(structure) = &self.structure[law] else { continue };
@@ -174,15 +174,15 @@ impl ShapeSearch<'_> {
     /// structure and with the chosen shapes.
     fn scan(
         &self,
-        chosen: &[Arc<Candidate>],
+        chosen: &[Arc<ShapeCandidate>],
         structures: &[Option<WhitenedStructure>],
         laws: &[usize],
-        library: &[Arc<Candidate>],
+        library: &[Arc<ShapeCandidate>],
         products: &mut [Vec<GramProducts>],
     ) -> Vec<f64> {
         let laws: Vec<usize> = laws.iter().copied().filter(|law| self.structure[*law].is_some()).collect();
         let weighted: Vec<Vec<HeadingColumn>> = laws.iter().map(|&law| self.weighted(law, chosen)).collect();
-        let criterion = |(candidate, products): (&Arc<Candidate>, &mut Vec<GramProducts>)| {
+        let criterion = |(candidate, products): (&Arc<ShapeCandidate>, &mut Vec<GramProducts>)| {
             let mut lowest = f64::INFINITY;
             for ((products, &law), weighted) in products.iter_mut().zip(&laws).zip(&weighted) {
                 for (cross, column) in products.cross.iter_mut().zip(&candidate.columns) {
@@ -199,16 +199,16 @@ impl ShapeSearch<'_> {
 
     /// Columns of shapes multiplied by the inverse covariance of a law: their products with raw columns equal the
     /// products of whitened columns.
-    fn weighted(&self, law: usize, shapes: &[Arc<Candidate>]) -> Vec<HeadingColumn> {
+    fn weighted(&self, law: usize, shapes: &[Arc<ShapeCandidate>]) -> Vec<HeadingColumn> {
         let mut columns = self.white(law, &shapes.iter().map(Arc::as_ref).collect::<Vec<_>>()).concat();
         for (record, values) in columns.iter_mut().flatten() {
-            self.weights[law].apply_transposed(*record, values);
+            self.whitening[law].apply_transposed(*record, values);
         }
         columns
     }
 
     /// Finalists of a scan: the best candidates, and the best candidate of several classes.
-    fn finalists(&self, criteria: &[f64], library: &[Arc<Candidate>]) -> Vec<Arc<Candidate>> {
+    fn finalists(&self, criteria: &[f64], library: &[Arc<ShapeCandidate>]) -> Vec<Arc<ShapeCandidate>> {
         let mut order: Vec<usize> = (0..library.len()).filter(|&place| criteria[place].is_finite()).collect();
         order.sort_by(|&a, &b| criteria[a].total_cmp(&criteria[b]));
         let (mut classes, mut kept) = (Vec::new(), Vec::new());
@@ -225,26 +225,28 @@ impl ShapeSearch<'_> {
         kept
     }
 
-    /// Best explanation with the criteria without each shape, and all explanations that were tried.
-    pub fn explain(&self, unit: f64) -> ((Explanation, Vec<f64>), Vec<Explanation>) {
+    /// Best explanation with the criteria without each shape, and all explanations that were tried; `unit` (s) is the
+    /// time unit of the lags.
+    pub fn explain(&self, unit: f64) -> ((ShapeExplanation, Vec<f64>), Vec<ShapeExplanation>) {
         let library = self.library(unit);
         let (criterion, law) = best_law(self.structure).unwrap_or(NONE);
         let laws = screening_laws(self.laws, law);
-        let mut current = Explanation { shapes: Vec::new(), criterion, law_index: law };
+        let mut current = ShapeExplanation { shapes: Vec::new(), criterion, law_index: law };
         let mut all = vec![current.clone()];
         let mut products = self.products(&laws, &library);
         for _ in 0..MAX_SHAPES {
             let structures = self.extended(&current.shapes);
             let criteria = self.scan(&current.shapes, &structures, &laws, &library, &mut products);
             let penalty: f64 = current.shapes.iter().map(|shape| shape.penalty).sum();
-            let with = |shape: Arc<Candidate>| {
+            let with = |shape: Arc<ShapeCandidate>| {
                 let (criterion, law_index) = self.best_law(&structures, &[&shape]);
                 let shapes = [current.shapes.as_slice(), &[shape]].concat();
-                Explanation { shapes, criterion: criterion + penalty, law_index }
+                ShapeExplanation { shapes, criterion: criterion + penalty, law_index }
             };
-            let mut next: Vec<Explanation> = self.finalists(&criteria, &library).into_iter().map(with).collect();
+            let mut next: Vec<ShapeExplanation> = self.finalists(&criteria, &library).into_iter().map(with).collect();
             next.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
-            let refined: Vec<Explanation> = next.iter().take(MAX_REFINED).filter_map(|e| self.refined(e)).collect();
+            let refined: Vec<ShapeExplanation> =
+                next.iter().take(MAX_REFINED).filter_map(|e| self.refined(e)).collect();
             next.extend(refined);
             next.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
             let Some(lowest) = next.first().cloned() else { break };
@@ -257,9 +259,9 @@ impl ShapeSearch<'_> {
 
     /// Explanation after backward elimination of shapes that do not improve the criterion, with the criteria without
     /// each of the remaining shapes.
-    fn pruned(&self, mut best: Explanation) -> (Explanation, Vec<f64>) {
+    fn pruned(&self, mut best: ShapeExplanation) -> (ShapeExplanation, Vec<f64>) {
         loop {
-            let fewer: Vec<Explanation> = (0..best.shapes.len()).map(|place| self.without(&best, place)).collect();
+            let fewer: Vec<ShapeExplanation> = (0..best.shapes.len()).map(|place| self.without(&best, place)).collect();
             let lowest = fewer.iter().min_by(|a, b| a.criterion.total_cmp(&b.criterion));
             match lowest.filter(|next| best.shapes.len() > 1 && next.criterion < best.criterion) {
                 Some(next) => best = next.clone(),
@@ -269,26 +271,26 @@ impl ShapeSearch<'_> {
     }
 
     /// Explanation without the shape at `place`, under the law that is then best.
-    fn without(&self, all: &Explanation, place: usize) -> Explanation {
+    fn without(&self, all: &ShapeExplanation, place: usize) -> ShapeExplanation {
         let mut shapes = all.shapes.clone();
         shapes.remove(place);
         self.explained(shapes)
     }
 
     /// Explanation by some shapes under their best law.
-    fn explained(&self, shapes: Vec<Arc<Candidate>>) -> Explanation {
-        let all: Vec<&Candidate> = shapes.iter().map(Arc::as_ref).collect();
+    fn explained(&self, shapes: Vec<Arc<ShapeCandidate>>) -> ShapeExplanation {
+        let all: Vec<&ShapeCandidate> = shapes.iter().map(Arc::as_ref).collect();
         let (criterion, law_index) =
             if all.is_empty() { best_law(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
-        Explanation { shapes, criterion, law_index }
+        ShapeExplanation { shapes, criterion, law_index }
     }
 
     /// Explanation with the continuous parameters refined by coordinate search under its law, then under its best law;
     /// `None` if no parameter moves.
-    fn refined(&self, from: &Explanation) -> Option<Explanation> {
+    fn refined(&self, from: &ShapeExplanation) -> Option<ShapeExplanation> {
         let structure = self.structure[from.law_index].as_ref()?;
         let mut shapes = from.shapes.clone();
-        let white = |shape: &Candidate| self.white(from.law_index, &[shape]).concat();
+        let white = |shape: &ShapeCandidate| self.white(from.law_index, &[shape]).concat();
         let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|shape| white(shape)).collect();
         let mut lowest = structure.criterion_with(&columns.concat());
         let mut has_moved = false;
@@ -296,7 +298,7 @@ impl ShapeSearch<'_> {
             for number in 0..shapes.len() {
                 for (place, sign) in (0..shapes[number].shape.parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
                     for _ in 0..3 {
-                        let Candidate { shape, record, penalty, .. } = *shapes[number];
+                        let ShapeCandidate { shape, record, penalty, .. } = *shapes[number];
                         let motion = &self.motions[record.unwrap_or(0)];
                         let extent = [motion.span()[1], motion.record.spacing];
                         let moved = shape.moved(place, sign * scale, extent);
@@ -317,21 +319,21 @@ impl ShapeSearch<'_> {
     }
 
     /// Whitened structure with the shapes of an explanation appended, under its law.
-    pub fn with_shapes(&self, all: &Explanation) -> Option<WhitenedStructure> {
-        let shapes: Vec<&Candidate> = all.shapes.iter().map(Arc::as_ref).collect();
+    pub fn with_shapes(&self, all: &ShapeExplanation) -> Option<WhitenedStructure> {
+        let shapes: Vec<&ShapeCandidate> = all.shapes.iter().map(Arc::as_ref).collect();
         self.structure[all.law_index].as_ref()?.extended(&self.white(all.law_index, &shapes).concat())
     }
 }
 
 /// Coefficients of shapes, shape by shape, from the step of all unknowns, as root mean square moments, rad of rudder.
-pub fn coefficients(shapes: &[Arc<Candidate>], step: &[f64]) -> Vec<Vec<f64>> {
+pub fn coefficients(shapes: &[Arc<ShapeCandidate>], step: &[f64]) -> Vec<Vec<f64>> {
     let count: usize = shapes.iter().map(|shape| shape.columns.len()).sum();
     let mut appended = step[step.len() - count..].iter().copied();
     shapes.iter().map(|shape| appended.by_ref().take(shape.columns.len()).collect()).collect()
 }
 
 /// Residual sum of squares (rad²) of a structure with shapes appended, after a step of all unknowns.
-pub fn residual_sum_of_squares(linear: &Linearisation, shapes: &[Arc<Candidate>], step: &[f64]) -> f64 {
+pub fn residual_sum_of_squares(linear: &Linearisation, shapes: &[Arc<ShapeCandidate>], step: &[f64]) -> f64 {
     let columns: Vec<&HeadingColumn> = shapes.iter().flat_map(|shape| &shape.columns).collect();
     let square = |(number, block): (usize, &HeadingSensitivities)| {
         let mut residual = block.residual.clone();

@@ -52,7 +52,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
     let law = NoiseLaw::white(trials.len(), base.mean_square());
     let structure = Structure::base(trials.len(), time);
     let theta = start_point(&structure, &response, std::iter::empty());
-    let fit = problem.fit(&structure, theta, base.initial(), &problem.weights(&law), StoppingRule::FINE);
+    let fit = problem.fit(&structure, theta, base.initial(), &problem.whitening(&law), StoppingRule::FINE);
     analyse_shapes(&problem, &fit, &law).expect("an analysis")
 }
 
@@ -66,13 +66,13 @@ fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
 fn moments_that_depend_on_time_are_located() {
     let step = analysed(&[in_moment(1, |t| if t > 150.0 { 1.0 } else { 0.0 })]);
     let (shape, _) = clearest(&step);
-    assert!(step.is_located() && shape.dependence() == Dependence::Time, "{shape:?}");
+    assert!(step.has_significant_shapes() && shape.dependence() == Dependence::Time, "{shape:?}");
     assert!(shape.span(300.0).is_some_and(|[from, _]| (from - 150.0).abs() < 6.0), "{shape:?}");
     let size = step.named_shapes(|_| 300.0)[0].size;
     assert!((to_deg(size) - 0.5_f64.sqrt()).abs() < 0.15, "{} deg", to_deg(size));
 
     let periodic = analysed(&[in_moment(2, |t| (TAU * t / 70.0).sin())]);
-    assert!(matches!(clearest(&periodic).0, Shape::Period(cycles) if (300.0 / cycles - 70.0).abs() < 3.0));
+    assert!(matches!(clearest(&periodic).0, Shape::Sinusoid(cycles) if (300.0 / cycles - 70.0).abs() < 3.0));
 
     let squalls = analysed(&[in_moment(3, |t| {
         let squall =
@@ -88,13 +88,13 @@ fn moments_that_depend_on_time_are_located() {
 #[test]
 fn moments_of_the_motion_are_located() {
     let cases = [
-        ("bank = c * y", -1.5e-3, Dependence::Way),
+        ("bank = c * y", -1.5e-3, Dependence::LateralDistance),
         ("tug = c * max(psi, 0)", -0.1, Dependence::Heading),
         ("cubic = c * psi^3", -1.0, Dependence::Heading),
     ];
     for (formula, c, dependence) in cases {
         let analysis = analysed(&[with_formula(formula, c)]);
-        assert!(analysis.is_located(), "{formula}: {}", analysis.gain_nats);
+        assert!(analysis.has_significant_shapes(), "{formula}: {}", analysis.gain_nats);
         assert_eq!(clearest(&analysis).0.dependence(), dependence, "{formula}");
     }
 }
@@ -104,13 +104,13 @@ fn moments_of_the_motion_are_located() {
 fn chance_is_no_shape() {
     for seed in 1..4 {
         let calm = analysed(&[in_moment(seed, |_| 0.0)]);
-        assert!(!calm.is_located() && calm.moment.is_none() && !calm.is_smooth, "{calm:?}");
+        assert!(!calm.has_significant_shapes() && calm.moment.is_none() && !calm.is_smooth, "{calm:?}");
         assert!((to_deg(calm.heading_sd[0]) / NOISE_DEG - 1.0).abs() < 0.15, "{:?}", calm.heading_sd);
         let walk = analysed(&[wandering(30.0, seed)]);
         // 30 deg at the end of 300 s without damping: a walk of √(20/300⁵) 30 deg/s² √s, over K/T as a rudder angle.
         let size = 30.0 * (20.0 / 300f64.powi(5)).sqrt() / BASE[1] * 150f64.sqrt();
-        let ratio = to_deg(walk.moment.expect("a random moment").rudder) / size;
-        assert!(!walk.is_located() && (0.4..2.5).contains(&ratio), "{ratio} {:?}", walk.best);
+        let ratio = to_deg(walk.moment.expect("a random moment").rudder_rms) / size;
+        assert!(!walk.has_significant_shapes() && (0.4..2.5).contains(&ratio), "{ratio} {:?}", walk.best);
     }
 }
 
@@ -142,7 +142,7 @@ fn criteria_are_those_of_dense_matrices() {
     let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
     let made = of_columns(time, residual.clone(), vec![0.0; rows]);
     let noise = RecordNoise::new(&PreparedRecord::unaveraged(&made), 0.1, 40.0, 1);
-    let weights = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
+    let whitening = RecordWhitening { whiteners: vec![noise.whitener(&NoiseColour::WHITE)], scale: vec![10.0] };
     let (log_n, freedom) = ((rows as f64).ln(), rows as f64 - 2.0);
     let dense = |count: usize| {
         let x = DMatrix::from_fn(rows, count, |i, k| 10.0 * columns[k][i]);
@@ -165,7 +165,7 @@ fn criteria_are_those_of_dense_matrices() {
         let penalties = penalty(2, 0.7) + if count > 3 { penalty(3, 0.0) } else { 0.0 };
         freedom * variance.ln() - 2.0 * rows as f64 * 10f64.ln() + integrated.ln() - sizes + log_n + penalties
     };
-    let whitened = WhitenedStructure::new(&structure, &weights, 1).expect("independent");
+    let whitened = WhitenedStructure::new(&structure, &whitening, 1).expect("independent");
     assert!((whitened.criterion() - dense(3)).abs() < 1e-8, "{} {}", whitened.criterion(), dense(3));
     let mut white = vec![vec![(0, columns[3].clone())]];
     white[0][0].1.iter_mut().for_each(|x| *x *= 10.0);
@@ -194,7 +194,8 @@ fn laws_have_the_sizes_they_say() {
     let sea = Some(ship::narrow_band::NarrowBand { sd: 1.0, frequency: 0.7, damping: 0.1 });
     assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
     assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
-    let walk = all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.freedom == 1).expect("a law");
+    let walk =
+        all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.parameter_count == 1).expect("a law");
     let tried = laws::screening_laws(&all, walk);
     assert!(tried.contains(&0) && tried.contains(&walk) && tried.len() < 16, "{tried:?}");
 }
@@ -234,9 +235,9 @@ fn tried_beside_the_best_law_are_weaker_ones_walks_and_an_error_of_the_compass()
     let gusts = Some(CorrelatedNoise::OrnsteinUhlenbeck(0));
     let beside_gusts = tried(&|law| kind(law) == gusts && (law.size - 10.0).abs() < 1e-9);
     assert_eq!(sizes(&beside_gusts, &|law| kind(law) == gusts), [-0.5, 0.0, 0.5, 1.0]);
-    let walk = Some(CorrelatedNoise::Walk);
+    let walk = Some(CorrelatedNoise::WalkMoment);
     assert_eq!(sizes(&beside_gusts, &|law| kind(law) == walk), [-2.0, -1.0, 0.0, 1.0, 2.0]);
-    assert_eq!(sizes(&beside_gusts, &|law| kind(law) == Some(CorrelatedNoise::Compass(1))), [0.0]);
+    assert_eq!(sizes(&beside_gusts, &|law| kind(law) == Some(CorrelatedNoise::CompassError(1))), [0.0]);
     assert_eq!(beside_gusts.len(), 1 + 4 + 5 + 1);
     let waves = Some(TAU / 7.0);
     let beside_waves = tried(&|law| sea(law) == waves && law.size == 3.0);

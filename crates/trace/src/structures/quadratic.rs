@@ -6,7 +6,7 @@ use estimation::subsets::{MAX_SUBSET_TERMS, RemovableTerm, condition_neutral, co
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::fit::{log_normaliser, prior_deviation};
+use crate::fit::{log_prior_normaliser, prior_deviation};
 use crate::model::{Structure, Term};
 
 /// Maximum number of best structures that are refitted after a screening.
@@ -29,12 +29,13 @@ pub struct TermEvidence {
 
 /// Quadratic approximation of the posterior of the full model, with its removable terms.
 pub(super) struct QuadraticPosterior {
+    /// Posterior covariance of the unknowns, given that pinned terms are absent.
     pub covariance: DMatrix<f64>,
     pub mean: DVector<f64>,
     pub removable: Vec<RemovableTerm>,
-    /// `true` for a term whose coefficients would leave their bounds at the neutral value; it is removed.
+    /// `true` for a term with a coefficient whose estimate is below its lower bound, the neutral value; it is removed.
     pinned: Vec<bool>,
-    /// `false` for an unknown of a removed term.
+    /// `false` for an amplitude of a removed term.
     pub free: Vec<bool>,
 }
 
@@ -42,7 +43,7 @@ impl QuadraticPosterior {
     /// Approximation about a point of the full structure; `None` if the precision is singular.
     pub fn new(normal: &NormalEquations, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
         let unknowns = structure.unknown_indices();
-        let count = normal.gradient.len();
+        let count = normal.right_hand_side.len();
         let mut at = DVector::zeros(count);
         unknowns.iter().zip(theta).for_each(|(place, value)| {
             if let Some(place) = place {
@@ -51,14 +52,14 @@ impl QuadraticPosterior {
         });
         let factor = normal.matrix.clone().cholesky()?;
         let mut covariance = factor.inverse();
-        let mut mean = &at + factor.solve(&normal.gradient);
+        let mut mean = &at + factor.solve(&normal.right_hand_side);
         let ranges = structure.term_ranges();
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));
             RemovableTerm { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
         };
-        // A term with a coefficient that would leave its bounds at the neutral value is removed, the worst first.
+        // A term with a coefficient below its lower bound, the neutral value, is removed, the worst first.
         for _ in 0..ranges.len() {
             let leaves = |number: &usize| {
                 let term = &structure.terms[*number];
@@ -72,7 +73,7 @@ impl QuadraticPosterior {
             let Some(worst) = (0..ranges.len()).filter(leaves).min_by(|&a, &b| {
                 let depth = |number: usize| {
                     removable(&mean, number)
-                        .sizes
+                        .amplitudes
                         .iter()
                         .map(|&(k, distance)| distance / covariance[(k, k)].sqrt())
                         .fold(0.0, f64::min)
@@ -90,21 +91,21 @@ impl QuadraticPosterior {
         let mut free = vec![true; count];
         for (term, _) in removable.iter().zip(&pinned).filter(|(_, pinned)| **pinned) {
             let term: &RemovableTerm = term;
-            term.sizes.iter().for_each(|(unknown, _)| free[*unknown] = false);
+            term.amplitudes.iter().for_each(|(unknown, _)| free[*unknown] = false);
         }
         Some(Self { covariance, mean, removable, pinned, free })
     }
 
-    /// Support of every term from the log weights of all subsets. The log ratio is for the effect in any form;
+    /// Evidence for every term from the log weights of all subsets. The log ratio is for the effect in any form;
     /// `effects` identifies the terms that are forms of one effect.
-    pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<TermEvidence> {
+    pub fn evidence(&self, effects: &[(&str, Option<usize>)]) -> Vec<TermEvidence> {
         let (kept, weights) = self.weighed();
-        let support = |number: usize| {
+        let evidence = |number: usize| {
             if !kept.contains(&number) {
                 return TermEvidence { log_ratio: 0.0, p_value: 1.0 };
             }
             let term = &self.removable[number];
-            let p_value = chi_square_p_value(&term.sizes, &self.covariance).unwrap_or(1.0);
+            let p_value = chi_square_p_value(&term.amplitudes, &self.covariance).unwrap_or(1.0);
             let forms: usize = kept
                 .iter()
                 .enumerate()
@@ -117,7 +118,7 @@ impl QuadraticPosterior {
             };
             TermEvidence { log_ratio: highest(true) - highest(false) - term.log_odds, p_value }
         };
-        (0..self.removable.len()).map(support).collect()
+        (0..self.removable.len()).map(evidence).collect()
     }
 
     /// Weighed terms, at most [`MAX_SUBSET_TERMS`], and the log weights of all their subsets.
@@ -170,7 +171,7 @@ impl QuadraticPosterior {
             condition_neutral(&mut covariance, &out);
             for &k in &kept {
                 removable[k]
-                    .sizes
+                    .amplitudes
                     .iter_mut()
                     .for_each(|(unknown, distance)| *distance += moved[*unknown] - mean[*unknown]);
             }
@@ -198,15 +199,16 @@ fn removable(
     mean: &DVector<f64>,
     places: impl Iterator<Item = (usize, Option<usize>)>,
 ) -> RemovableTerm {
-    let mut removable = RemovableTerm { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
+    let mut removable =
+        RemovableTerm { amplitudes: Vec::new(), shape_parameters: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
     for (((place, unknown), prior), neutral) in places.zip(&term.priors).zip(term.neutral()) {
         let Some(unknown) = unknown else { continue };
         let at = if prior.is_shape { theta[place] } else { neutral };
-        removable.log_prior += log_normaliser(*prior);
+        removable.log_prior += log_prior_normaliser(*prior);
         removable.log_prior -= 0.5 * prior_deviation(*prior, at).powi(2);
         match prior.is_shape {
-            true => removable.shapes.push(unknown),
-            false => removable.sizes.push((unknown, mean[unknown] - neutral)),
+            true => removable.shape_parameters.push(unknown),
+            false => removable.amplitudes.push((unknown, mean[unknown] - neutral)),
         }
     }
     removable

@@ -32,7 +32,7 @@ pub struct Structures {
     /// a candidate of small visibility is unobservable.
     pub visibility: BTreeMap<TermName, f64>,
     /// Evidence for every candidate term.
-    pub support: BTreeMap<TermName, TermEvidence>,
+    pub evidence: BTreeMap<TermName, TermEvidence>,
     /// Structures under other noise laws: weight, names of the terms.
     pub(super) other_law_structures: Vec<(f64, Vec<TermName>)>,
 }
@@ -60,8 +60,8 @@ impl Structures {
                 self.visibility.entry(*name).or_insert(*visibility);
                 self.probabilities.entry(*name).or_insert(0.0);
             }
-            for (name, support) in &rival.support {
-                self.support.entry(*name).or_insert(*support);
+            for (name, evidence) in &rival.evidence {
+                self.evidence.entry(*name).or_insert(*evidence);
             }
             self.other_law_structures
                 .extend(rival.weighed_names().map(|(weight, names)| (weight * odds / total, names)));
@@ -93,7 +93,7 @@ impl Structures {
 
     /// Evidence for the best form of an effect.
     pub fn effect_evidence(&self, id: &str, record: Option<usize>) -> TermEvidence {
-        let forms = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == record).map(|(_, form)| *form);
+        let forms = self.evidence.iter().filter(|(name, _)| name.0 == id && name.2 == record).map(|(_, form)| *form);
         let none = TermEvidence { log_ratio: 0.0, p_value: 1.0 };
         let mut best = forms.max_by(|a, b| a.log_ratio.total_cmp(&b.log_ratio)).unwrap_or(none);
         // The refitted structures are more accurate than the quadratic approximation.
@@ -147,7 +147,7 @@ mod tests {
             all: Vec::new(),
             probabilities: BTreeMap::new(),
             visibility: BTreeMap::new(),
-            support: BTreeMap::new(),
+            evidence: BTreeMap::new(),
             other_law_structures: rivals.iter().map(|(weight, names)| (*weight, names.to_vec())).collect(),
         }
     }

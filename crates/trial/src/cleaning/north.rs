@@ -35,11 +35,12 @@ const MAX_SWEEP: (f64, usize) = (60.0, 600);
 /// Settling time of a filter after a sweep, in lengths of the sweep.
 const SETTLING: usize = 2;
 
-/// Maximum share of headings in sweeps.
+/// Maximum share of headings in sweeps and settling times.
 const MAX_SWEPT_SHARE: f64 = 0.6;
 
 /// Sets headings in sweeps through the compass, and in the settling time after them, to missing and returns the
-/// warning. `None`, and no change, without a sweep or with more than [`MAX_SWEPT_SHARE`] of the headings in sweeps.
+/// warning. A full turn between the headings before and after a sweep is removed. `None`, and no change, for fewer than
+/// 41 headings, without a sweep, or with more than [`MAX_SWEPT_SHARE`] of the headings in sweeps and settling times.
 pub(super) fn blank_sweeps(columns: &mut Columns, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;

@@ -22,7 +22,7 @@ const MIN_HEIGHT_SDS: f64 = 12.0;
 /// Minimum ratio of the height of a spike to the distance between its neighbours.
 const MIN_SPIKE_RATIO: f64 = 4.0;
 
-/// Maximum share of spikes among the readings: a larger share is the noise of the sensor.
+/// Maximum number of spikes or jumps as a share of the rows: a larger share is the noise of the sensor.
 const MAX_SPIKE_SHARE: f64 = 0.05;
 
 /// Minimum number of lost polls of a value, and their maximum share of a channel.
@@ -49,7 +49,7 @@ fn readings(values: &[f64]) -> impl Iterator<Item = usize> {
 }
 
 /// Rows `[before, at, after]` of every inner reading and its neighbours, and the deviation of the reading from the
-/// straight line between them.
+/// straight line between its neighbours, in the unit of the values.
 pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
     let (mut before, mut last) = (None, None);
     readings(values).filter_map(move |row| {
@@ -63,7 +63,7 @@ pub(crate) fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterato
 }
 
 /// Robust standard deviation from the straight line between neighbours: 1.4826 times the median of at most a hundred
-/// thousand deviations. `None` for a channel with few readings.
+/// thousand deviations. `None` for a channel with ten deviations or fewer.
 fn deviation_sd(time: &[f64], values: &[f64]) -> Option<f64> {
     const MAX_DEVIATIONS: usize = 100_000;
     let every = values.len() / MAX_DEVIATIONS + 1;
@@ -150,8 +150,9 @@ pub(super) fn blank_spikes(columns: &mut Columns, rejected: &mut Vec<RejectedRea
     warnings
 }
 
-/// Reports jumps of the heading: steps far larger than the steps before and after. `None` without a jump, and if jumps
-/// are so frequent that they are the noise of the sensor.
+/// Warning of the jumps of a heading: steps of more than `least` (rad) and far larger than the steps before and after.
+/// Their readings are appended to `rejected` and kept. `None` without a jump, and if jumps are so frequent that they
+/// are the noise of the sensor.
 fn jumps(time: &[f64], heading: &[f64], least: f64, rejected: &mut Vec<RejectedReading>) -> Option<Warning> {
     let mut jumps = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];

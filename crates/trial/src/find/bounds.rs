@@ -1,8 +1,8 @@
 //! Bounds of a manoeuvre in a log: from the first execute, or the steady approach before it, to the last row before the
 //! rudder leaves its last hold or the propeller stops.
 
-use super::course::thinned_median;
 use super::detection::{Approach, DetectedManoeuvre, MAX_APPROACH_SPEED_CHANGE, Quality};
+use super::headings::thinned_median;
 use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
@@ -70,7 +70,7 @@ pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<Det
             manoeuvre: Some(pattern.manoeuvre.clone()),
             from: time[first],
             until: time[last],
-            start: time[start],
+            first_execute: time[start],
             executes,
             quality,
         });
@@ -220,7 +220,7 @@ impl ApproachSegment {
             let first = time.partition_point(|&t| t < time[start] - share * longest).max(rudder_from);
             let duration = time[start] - time[first];
             let long = duration >= MIN_APPROACH_SHARE * pattern.scale * (1.0 - 1e-9) || first == 0;
-            let turned = record.course.heading_change(time[first], time[start - 1]);
+            let turned = record.headings.heading_change(time[first], time[start - 1]);
             let limit = STEADY_RATE * rate * duration + STEADY_HEADING * pattern.swing;
             if long && first < start && turned.is_none_or(|turned| turned.abs() <= limit) {
                 return Self { first, approach: Approach::Steady, speed_change };

@@ -13,14 +13,14 @@ const MAX_MISSING_SHARE: f64 = 0.01;
 /// Minimum length of a gap, usual time steps.
 const GAP_STEPS: f64 = 10.0;
 
-/// Maximum difference between holds to one side without a remark, degrees.
+/// Maximum difference between the rudder angles held to a side without a remark, degrees.
 const MAX_SPREAD_DEG: f64 = 1.5;
 
 /// Maximum change of speed and revolutions in a steady approach, as a share, from its first third to its last: 5 % over
 /// its full length.
 pub(crate) const MAX_APPROACH_SPEED_CHANGE: f64 = 0.033;
 
-/// Approach of a manoeuvre.
+/// State of the ship in the approach of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Approach {
@@ -32,19 +32,19 @@ pub enum Approach {
     Absent,
 }
 
-/// Quality of a log in the part of a manoeuvre.
+/// Quality of the part of a log that contains a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
     /// Share of the rows without a heading, 0 to 1.
     pub missing_headings: f64,
-    /// Maximum gap of the heading, s; `None` if there is no gap much longer than the usual time step.
+    /// Maximum gap of the heading, s; `None` without a gap of more than ten usual time steps.
     pub longest_gap: Option<f64>,
-    /// Maximum difference between the rudder angles held to one side of a zig-zag, rad.
+    /// Maximum difference between the rudder angles held to a side of a zig-zag, rad; 0 for other manoeuvres.
     pub rudder_spread: f64,
     /// Approach; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
-    /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
+    /// Change of speed from the first to the last third of the approach (at most a time scale long), as a share of the
     /// larger; positive for an increase; `None` if no speed was recorded.
     pub speed_change: Option<f64>,
 }
@@ -102,8 +102,8 @@ pub struct DetectedManoeuvre {
     /// Time of the last row of the part, s; the rudder is still held and the propeller turns.
     pub until: f64,
     /// Time of the first row in which the rudder moves for this manoeuvre, s; for a straight piece its first row.
-    pub start: f64,
-    /// Number of executes: a turn has one, a straight piece none.
+    pub first_execute: f64,
+    /// Number of executes up to `until`: 1 for a turning circle or pull-out, 0 for a straight piece.
     pub executes: usize,
     /// Quality of the log in the part.
     pub quality: Quality,

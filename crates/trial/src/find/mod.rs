@@ -1,5 +1,5 @@
 //! Detection of manoeuvres in a long log: zig-zags, turning circles, pull-outs, spirals and straight pieces, each with
-//! its part of the log. Characteristics are read in [`crate::zigzag`]; identification and cleaning are elsewhere.
+//! its part of the log. Characteristics of a zig-zag are computed in [`crate::zigzag`].
 //!
 //! The log is first cut into holds of the rudder (`rudder`). A manoeuvre is a pattern of holds to which the heading
 //! responds (`zigzags`, `spirals`, `turns`); the pieces between may be straight (`straights`). The bounds of every part
@@ -12,8 +12,8 @@
 //! Source of the manoeuvres: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 mod bounds;
-mod course;
 mod detection;
+mod headings;
 mod pattern;
 mod rudder;
 mod spirals;
@@ -23,7 +23,7 @@ mod tests;
 mod turns;
 mod zigzags;
 
-use course::HeadingReadings;
+use headings::HeadingReadings;
 use pattern::{Pattern, PreparedLog};
 use rudder::{Hold, RudderHolds};
 
@@ -38,9 +38,9 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
-    let course = HeadingReadings::from_columns(log.time, log.heading);
+    let headings = HeadingReadings::from_columns(log.time, log.heading);
     let rudder = RudderHolds::from_signal(log.time, log.rudder);
-    let record = PreparedLog { log, rudder: &rudder, course: &course };
+    let record = PreparedLog { log, rudder: &rudder, headings: &headings };
     let mut patterns = spirals::spirals(&record);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();
     patterns.extend(zigzags::zigzags(&record, &free));

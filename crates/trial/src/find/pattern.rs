@@ -1,10 +1,10 @@
 //! Input of a search: the channels of a log, the quantities derived from them, and the patterns of holds.
 
-use super::course::HeadingReadings;
+use super::headings::HeadingReadings;
 use super::rudder::{Hold, RudderHolds};
 use crate::manoeuvre::Manoeuvre;
 
-/// Channels of a search, row by row, in SI units and radians.
+/// Channels of a log to be searched for manoeuvres, row by row, in SI units and radians.
 ///
 /// All channels have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,7 @@ impl Signals<'_> {
 pub(crate) struct PreparedLog<'a> {
     pub log: &'a Signals<'a>,
     pub rudder: &'a RudderHolds,
-    pub course: &'a HeadingReadings,
+    pub headings: &'a HeadingReadings,
 }
 
 /// Detected manoeuvre, before the start and end of its part of the log are determined.

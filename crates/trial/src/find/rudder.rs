@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::course::{thinned, thinned_median};
+use super::headings::{thinned, thinned_median};
 use estimation::statistics::median;
 
 /// Minimum half-width of the band of a hold, rad: orders and feedback agree to about half a degree.
@@ -27,7 +27,7 @@ const LEVEL_TOLERANCE: f64 = 0.15;
 /// Maximum pause between merged holds as a share of their total duration.
 const MAX_PAUSE_SHARE: f64 = 0.5;
 
-/// Minimum duration of a hold as a share of the adjacent holds.
+/// Maximum duration of a short hold, such as a pause or the end of a movement, as a share of the adjacent holds.
 const SHORT_SHARE: f64 = 0.2;
 
 /// Maximum number of consecutive rows off the level within a hold.
@@ -55,7 +55,7 @@ pub(crate) struct Hold {
 }
 
 impl Hold {
-    /// Time at rest, s.
+    /// Time from the first to the last row, s.
     pub fn duration(&self) -> f64 {
         self.until - self.from
     }
@@ -109,7 +109,7 @@ impl RudderHolds {
         hold.level.abs().min((hold.level - self.neutral).abs()) < self.floor
     }
 
-    /// Cuts the log wherever the rudder leaves the band about the mean of the rows since the last cut.
+    /// Holds of the log, cut wherever the rudder leaves the band about the mean of the rows since the last cut.
     fn cut(&self, time: &[f64]) -> Vec<Hold> {
         let mut holds = Vec::new();
         let (mut first, mut last, mut sum, mut count) = (0, 0, 0.0, 0.0);
@@ -181,7 +181,7 @@ impl RudderHolds {
         })
     }
 
-    /// Range of the settled rudder: values beyond it belong to a movement.
+    /// Range of the settled rudder, rad: values beyond it belong to a movement. `None` without a finite value.
     fn settled(&self, values: &[f64], band: f64) -> Option<RangeInclusive<f64>> {
         let level = thinned_median(values)?;
         let mut off: Vec<f64> = thinned(values).iter().map(|x| (x - level).abs()).collect();
@@ -192,7 +192,7 @@ impl RudderHolds {
     }
 }
 
-/// `true` if two neighbouring holds are one hold: similar level, short pause.
+/// `true` if two neighbouring holds belong together: similar level, short pause.
 fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
     // The end of a movement is also near the level.
@@ -215,8 +215,8 @@ pub(crate) fn finite_median(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
-/// Step of a rounded rudder that flickers, rad: the 5th percentile of the changes between rows, without rows that
-/// repeat the previous one; 0 if the rudder seldom changes.
+/// Resolution of a rounded rudder, rad: the 5th percentile of the changes between rows, without rows that repeat the
+/// previous row; 0 if the rudder seldom changes.
 fn smallest_step(rudder: &[f64]) -> f64 {
     let steps = rudder.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     // Values that differ by rounding of the arithmetic count as equal.

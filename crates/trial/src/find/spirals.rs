@@ -56,7 +56,7 @@ pub(crate) fn spirals(record: &PreparedLog) -> Vec<Pattern> {
         group[1..].iter().for_each(|sweep| holds.extend(&sweep[1..]));
         let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
         let scale = finite_median(holds.iter().map(Hold::duration));
-        let turns = holds.iter().filter_map(|hold| record.course.heading_change(hold.from, hold.until));
+        let turns = holds.iter().filter_map(|hold| record.headings.heading_change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
         patterns.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
     }
@@ -103,7 +103,7 @@ fn is_answered(record: &PreparedLog, sweep: &[Hold]) -> bool {
     let thirds = |hold: &Hold| {
         let third = hold.duration() / 3.0;
         let late = hold.until - third;
-        record.course.mean_rate(late - third, late).zip(record.course.mean_rate(late, hold.until))
+        record.headings.mean_rate(late - third, late).zip(record.headings.mean_rate(late, hold.until))
     };
     let Some(rates) = sweep.iter().map(thirds).collect::<Option<Vec<(f64, f64)>>>() else { return false };
     let (first, last) = (rates[0].1, rates[rates.len() - 1].1);

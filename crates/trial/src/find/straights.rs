@@ -113,7 +113,7 @@ impl Piece {
             manoeuvre: None,
             from,
             until,
-            start: from,
+            first_execute: from,
             executes: 0,
             quality: Quality::from_rows(record, self.first, self.last),
         })

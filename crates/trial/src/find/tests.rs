@@ -22,7 +22,7 @@ fn half_an_hour(step: f64) -> (SimulatedLog, (f64, f64)) {
 }
 
 fn assert_part(part: &DetectedManoeuvre, (start, until): (f64, f64), step: f64) {
-    assert!((part.start - start).abs() <= 2.001 * step, "starts at {} for {start}", part.start);
+    assert!((part.first_execute - start).abs() <= 2.001 * step, "starts at {} for {start}", part.first_execute);
     assert!((part.until - until).abs() <= 2.001 * step, "ends at {} for {until}", part.until);
 }
 
@@ -114,7 +114,12 @@ fn faults_of_a_rudder_do_not_hide_a_zig_zag() {
         let detected = log.detected();
         assert_eq!(detected.len(), 1, "{name}: {:?}", log.names());
         assert_eq!((detected[0].name().as_str(), detected[0].executes), ("zig-zag 10/10", 12), "{name}");
-        assert!((detected[0].start - part.0).abs() < tolerance, "{name}: {} for {}", detected[0].start, part.0);
+        assert!(
+            (detected[0].first_execute - part.0).abs() < tolerance,
+            "{name}: {} for {}",
+            detected[0].first_execute,
+            part.0
+        );
         assert!((detected[0].until - part.1).abs() < tolerance, "{name}: {} for {}", detected[0].until, part.1);
     }
 }
@@ -192,7 +197,7 @@ fn all_kinds_are_told_apart() {
         "straight",
     ];
     let mut list = manoeuvres(&log.signals());
-    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].start));
+    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].first_execute));
     // A course that is reached slowly may count as two pieces.
     list.dedup_by(|piece, before| piece.manoeuvre.is_none() && before.manoeuvre.is_none());
     let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
@@ -231,7 +236,7 @@ fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
 
 /// Parts, without the values whose sign changes.
 fn parts(list: &[DetectedManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
-    list.iter().map(|part| (part.from, part.until, part.start, part.executes)).collect()
+    list.iter().map(|part| (part.from, part.until, part.first_execute, part.executes)).collect()
 }
 
 #[test]
@@ -258,7 +263,7 @@ fn the_unit_of_time_does_not_matter() {
     }
 }
 
-/// A day at 10 Hz, with and without noise; its time is printed; the aim is 0.5 s.
+/// Log of a day at 10 Hz, with and without noise. The time of the search is printed; it should be about 0.5 s.
 #[test]
 fn a_day_at_ten_hertz() {
     let mut log = SimulatedLog::new(0.1);

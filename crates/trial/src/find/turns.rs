@@ -22,7 +22,7 @@ const MIN_TURN: f64 = FRAC_PI_2;
 /// Maximum rudder amidships, as a share of the rudder of the turn.
 const MAX_AMIDSHIPS_SHARE: f64 = 0.3;
 
-/// Change of heading that defines the time scale of a pull-out: the time that it takes at the rate of the turn, rad.
+/// Change of heading, rad, whose duration at the yaw rate of the turn is the time scale of a pull-out.
 const PULL_OUT_TURN: f64 = 30.0_f64.to_radians();
 
 /// Minimum duration of the rudder amidships, time scales.
@@ -51,7 +51,7 @@ pub(crate) fn turns(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
 fn turned(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let rudder = hold.level - record.rudder.neutral;
     let is_over = hold.level.abs() >= MIN_RUDDER && rudder.abs() >= MIN_RUDDER;
-    let turned = record.course.heading_change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
+    let turned = record.headings.heading_change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
     (turned * rudder.signum() >= MIN_TURN).then_some(turned)
 }
 
@@ -65,7 +65,7 @@ fn is_whole(record: &PreparedLog, hold: &Hold) -> bool {
 /// is not put amidships soon or long enough, or if headings are missing.
 fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
-    let rate = record.course.mean_rate(end_of_turn, turn.until)?.abs();
+    let rate = record.headings.mean_rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT_TURN / rate;
     let soon = |hold: &&Hold| hold.from - turn.until <= time.max(0.25 * turn.duration());
     // Between two turns the rudder is not amidships.
@@ -77,7 +77,7 @@ fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern>
     if !is_amidships || !is_whole(record, amidships) {
         return None;
     }
-    let rate_in = |k: f64| record.course.mean_rate(amidships.from + k * time, amidships.from + (k + 1.0) * time);
+    let rate_in = |k: f64| record.headings.mean_rate(amidships.from + k * time, amidships.from + (k + 1.0) * time);
     let mut pieces = 1.0;
     while (pieces + 1.0) * time <= amidships.duration() {
         let change = rate_in(pieces)? - rate_in(pieces - 1.0)?;

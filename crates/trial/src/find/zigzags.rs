@@ -4,7 +4,7 @@
 //! Source: ITTC 7.5-04-02-01, Full Scale Manoeuvring Trials.
 
 use super::bounds::first_execute;
-use super::course::thinned_median;
+use super::headings::thinned_median;
 use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
 use crate::manoeuvre::Manoeuvre;
@@ -39,7 +39,7 @@ const MAX_SWING_RATIO: f64 = 1.7;
 /// more if the hold begins within a reversal.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
 
-/// The same for a trial of only three holds: narrow, because three holds may fit by chance.
+/// [`FIRST_SWING`] of a trial of only three holds: narrower, because three holds may fit by chance.
 const ONLY_SWING: (f64, f64) = (0.4, 0.62);
 
 /// Length of the straight approach of a trial of three holds, as a share of the first hold.
@@ -148,7 +148,7 @@ fn is_level(a: f64, b: f64) -> bool {
     (a - b).abs() <= (SIDE_TOLERANCE * size).max(MIN_SIDE_TOLERANCE.min(0.4 * size))
 }
 
-/// Parts of a chain in which the heading responds as in a zig-zag.
+/// Zig-zags in a chain of holds: its parts in which the heading responds as in a zig-zag.
 fn answered(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
     if holds.len() < MIN_HOLDS {
         return Vec::new();
@@ -197,7 +197,7 @@ fn side(holds: &[Hold], index: usize) -> f64 {
 /// Heading at the end of a hold, between its last row and the next, rad; `None` if headings are missing there.
 fn heading_at_end(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
-    record.course.heading_near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
+    record.headings.heading_near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
 }
 
 /// Zig-zag of holds whose swings agree, with the headings at their ends; `None` if the holds are not a zig-zag.
@@ -209,7 +209,7 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
     let swing = median(&mut sizes)?;
     let mut first = 0;
     let execute = record.log.time[first_execute(record, holds, holds[0].duration(), 0)];
-    let began = record.course.heading_near(execute, 0.02 * holds[0].duration(), holds[0].duration());
+    let began = record.headings.heading_near(execute, 0.02 * holds[0].duration(), holds[0].duration());
     if let (Some(began), Some(ended)) = (began, headings[0]) {
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == MIN_HOLDS { ONLY_SWING } else { FIRST_SWING };
@@ -218,7 +218,7 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
         first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
-    let turned = record.course.heading_change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
+    let turned = record.headings.heading_change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
     if turned > MAX_LAST_SWINGS * swing {
         last -= 1;
     }
@@ -252,7 +252,7 @@ fn is_straight_before(record: &PreparedLog, holds: &[Hold], from: f64, began: f6
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
     let [a, b] = [holds[0].level, holds[1].level];
     let rudder = thinned_median(&record.rudder.angle[rows[0]..rows[1]]);
-    let heading = record.course.heading_near(from - time, 0.1 * time, 0.5 * time);
+    let heading = record.headings.heading_near(from - time, 0.1 * time, 0.5 * time);
     rudder.is_none_or(|rudder| (rudder - 0.5 * (a + b)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (a - b).abs())
         && heading.is_none_or(|heading| (began - heading).abs() <= MAX_APPROACH_TURN * swing)
 }

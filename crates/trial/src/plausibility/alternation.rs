@@ -12,8 +12,8 @@ const MIN_DISAGREEMENT: f64 = 0.006;
 /// Minimum number of deviations.
 const MIN_DEVIATIONS: usize = 40;
 
-/// Maximum share of the sum of squares next to repeated readings; a channel in coarse steps, or one that the logger
-/// writes only when it changes, has a larger share.
+/// Maximum share of the sum of squares next to repeated readings; a channel in coarse steps, or written only on change,
+/// has a larger share.
 const MAX_REPEATED_SHARE: f64 = 0.5;
 
 /// Disagreement of the two sensors of a channel (rms), in the unit of the values; `None` for a single sensor.

@@ -5,8 +5,8 @@ use crate::record::Trial;
 /// Minimum number of changes.
 const MIN_CHANGES: usize = 60;
 
-/// Minimum correlation of the changes of the yaw rate and of the derivative of the heading; two instruments have a
-/// lower one.
+/// Minimum correlation of the changes of the yaw rate and of the derivative of the heading; that of two instruments is
+/// lower.
 const MIN_CORRELATION: f64 = 0.95;
 
 /// Maximum correlation between successive changes of a derivative that consists of noise and jumps of the heading. The

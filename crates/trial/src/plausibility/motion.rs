@@ -35,7 +35,7 @@ pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
     turned / duration
 }
 
-/// Changes of a channel with their duration (s), over a hundredth of its readings each, to reduce the effect of noise.
+/// Changes of a channel (in its unit) and their durations (s), each over a hundredth of the readings to reduce noise.
 pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     const PARTS: usize = 100;
     let read = values.iter().filter(|value| value.is_finite()).count();

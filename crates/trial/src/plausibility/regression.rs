@@ -10,12 +10,12 @@ use crate::record::{Trial, integrate};
 /// Maximum number of rows of a regression; longer records are thinned after integration.
 const MAX_ROWS: usize = 2000;
 
-/// Partial regression of a signal on another, with nuisance signals projected out of both.
+/// Slope of a response on a regressor, with nuisance signals projected out of both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PartialSlope {
     /// Slope: units of the response per unit of the regressor.
     pub value: f64,
-    /// Explained share of the remaining sum of squares, 0 to 1.
+    /// Explained share of the sum of squares that remains after the projection, 0 to 1.
     pub share: f64,
 }
 
@@ -86,7 +86,7 @@ pub(crate) fn thinned(rows: impl Iterator<Item = usize> + Clone) -> impl Iterato
 
 /// Partial slope of the last column on the last but one, with all other columns projected out of both (Frisch & Waugh
 /// 1933): the last entries of R in the QR decomposition of the columns. `None` for at most N rows, if the other columns
-/// explain one of the two fully, and if numbers overflow.
+/// explain either of the two fully, and if numbers overflow.
 pub(crate) fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<PartialSlope> {
     let columns = DMatrix::from_row_iterator(rows.len(), N, rows.iter().flatten().copied());
     let before: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();

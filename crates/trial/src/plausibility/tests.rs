@@ -50,7 +50,7 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
     columns
 }
 
-fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausible> {
+fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausibility> {
     let origin = RecordOrigin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
     let checked = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and each gives a warning of that.
@@ -106,9 +106,9 @@ fn zig_zags_of_ships_of_every_size_pass_and_every_wrong_unit_and_sign_is_named()
 fn a_record_without_movement_is_refused() {
     let still = sail(0.1, 16.0, 100.0, |_, _, _| (0.02, 0.0));
     let frozen = scaled(still, Channel::Heading, 0.0);
-    assert!(matches!(verdict(frozen), Err(Implausible::NothingMoves { .. })));
+    assert!(matches!(verdict(frozen), Err(Implausibility::NothingMoves { .. })));
     let frozen = scaled(zig_zag(10.0, 10.0, 0.1, 16.0), Channel::Heading, 0.0);
-    assert!(matches!(verdict(frozen), Err(Implausible::HeadingConstant { .. })));
+    assert!(matches!(verdict(frozen), Err(Implausibility::HeadingConstant { .. })));
     let pull_out = sail(0.1, 16.0, 100.0, |t, _, _| (0.0, if t < 20.0 { 0.01 } else { 0.0 }));
     let warnings = verdict(pull_out).expect("a ship may turn without its rudder");
     assert!(warnings[0].text.contains("the rudder stays at"), "{warnings:?}");
@@ -141,7 +141,7 @@ fn headings_that_wrap_at_two_pi_under_a_degree_name_are_named() {
     for psi in columns.channels.get_mut(&Channel::Heading).expect("made by sail") {
         *psi = psi.rem_euclid(std::f64::consts::TAU) * PER_DEGREE;
     }
-    assert!(matches!(verdict(columns), Err(Implausible::HeadingInRadians { .. })));
+    assert!(matches!(verdict(columns), Err(Implausibility::HeadingInRadians { .. })));
 }
 
 #[test]

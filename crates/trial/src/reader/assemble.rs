@@ -1,7 +1,7 @@
 //! Assembly of channels with different sampling instants into the columns of a record. A row is an instant with a
-//! reading of heading, rudder, order or yaw rate; those without a reading are missing. The rudder is interpolated
-//! linearly between its readings, as the steering gear moves; so are model inputs such as speed and wind. Gaps are not
-//! interpolated.
+//! reading of heading, rudder, order or yaw rate; a channel without a reading at this instant is missing in the row.
+//! The rudder is interpolated linearly between its readings, as the steering gear moves; so are model inputs such as
+//! speed and wind. Gaps are not interpolated.
 
 use document::{Warning, WarningCode};
 
@@ -97,8 +97,8 @@ pub(super) fn split_columns(columns: Columns, offset: f64) -> Vec<Series> {
     channels.into_iter().map(readings).collect()
 }
 
-/// Adds missing channels that others determine: the speed from surge and sway, and the rudder angle from the rudder
-/// order. Returns a warning if the order replaces the angle.
+/// Adds channels that were not recorded: the speed from surge and sway, and the rudder order as the rudder angle.
+/// Returns a warning if the order replaces the angle, else `None`.
 pub(super) fn add_derived_channels(columns: &mut Columns) -> Option<Warning> {
     let channels = &mut columns.channels;
     if !channels.contains_key(&Channel::Speed)
@@ -117,7 +117,8 @@ pub(super) fn add_derived_channels(columns: &mut Columns) -> Option<Warning> {
     ))
 }
 
-/// Gives every row a rudder angle: interpolated between two readings without a gap; other rows are omitted.
+/// Interpolates missing rudder angles between two readings without a gap, and omits the rows in gaps. Returns the
+/// warning; `None`, and no change, if no angle is missing or fewer than two are recorded.
 pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
     let time = &columns.time;
     let rudder = columns.channels.get_mut(&Channel::Rudder)?;

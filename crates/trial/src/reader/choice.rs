@@ -85,7 +85,7 @@ impl Log {
         self.into_interval(from, until)
     }
 
-    /// Time of the log as text: seconds, and the reading of the clock.
+    /// Text of a time (s) of the log: seconds, and the time of day if the log has a clock.
     fn shown(&self, time: f64) -> String {
         let clock = self.clock.map(|clock| format!(" ({})", clock.time_of_day_at(time)));
         format!("{time:.1} s{}", clock.unwrap_or_default())

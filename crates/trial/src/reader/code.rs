@@ -4,11 +4,11 @@ use document::ErrorCode;
 
 use super::error::{Problem, ReadError};
 use crate::file::FileError;
-use crate::plausibility::Implausible;
+use crate::plausibility::Implausibility;
 use crate::record::TrialError;
 
 impl ReadError {
-    /// Code of the error.
+    /// Machine-readable code of the error.
     pub fn code(&self) -> ErrorCode {
         match self {
             Self::Table { problem, .. } => problem.code(),
@@ -18,7 +18,7 @@ impl ReadError {
 }
 
 impl Problem {
-    /// Code of the problem.
+    /// Machine-readable code of the problem.
     pub fn code(&self) -> ErrorCode {
         match self {
             Self::File(error) => file_code(error),
@@ -36,14 +36,16 @@ impl Problem {
             Self::LongLine { .. } | Self::Format { .. } | Self::CellArray { .. } => ErrorCode::Format,
             Self::Damaged { .. } | Self::DamagedLog { .. } => ErrorCode::Damaged,
             Self::NoTable { .. } => ErrorCode::NoTable,
-            Self::OpenUnit { .. } => ErrorCode::OpenUnit,
-            Self::Parts { .. } | Self::Counts { .. } | Self::NoAngle { .. } => ErrorCode::AngleScale,
-            Self::EpochUnit { .. } | Self::OpenTime { .. } => ErrorCode::TimeUnit,
-            Self::NotAStamp { .. } | Self::EitherMonth { .. } => ErrorCode::Stamp,
+            Self::MissingUnit { .. } => ErrorCode::OpenUnit,
+            Self::PartsOfDegree { .. } | Self::ConverterCounts { .. } | Self::ImpossibleAngle { .. } => {
+                ErrorCode::AngleScale
+            }
+            Self::EpochUnit { .. } | Self::MissingTimeUnit { .. } => ErrorCode::TimeUnit,
+            Self::NotAStamp { .. } | Self::AmbiguousDate { .. } => ErrorCode::Stamp,
             Self::Duplicate { .. } => ErrorCode::DuplicateColumn,
             Self::NoRows { .. } | Self::TooShort { .. } => ErrorCode::TooShort,
             Self::NotANumber { .. } => ErrorCode::Cell,
-            Self::Cells { .. } => ErrorCode::RowLength,
+            Self::WrongCellCount { .. } => ErrorCode::RowLength,
             Self::TimeBackwards { .. } | Self::ClockBack { .. } => ErrorCode::TimeBackwards,
             Self::TimeRepeats { .. } => ErrorCode::TimeRepeats,
             Self::EmptyPart { .. } => ErrorCode::EmptyPart,
@@ -58,25 +60,25 @@ impl Problem {
 fn file_code(error: &FileError) -> ErrorCode {
     match error {
         FileError::NotFound => ErrorCode::NotFound,
-        FileError::Folder | FileError::NoFile => ErrorCode::NoFile,
+        FileError::Folder | FileError::NotAFile => ErrorCode::NoFile,
         FileError::TooLarge { .. } => ErrorCode::TooLarge,
         FileError::NotUtf8 { .. } => ErrorCode::Encoding,
         FileError::Io(_) => ErrorCode::Unreadable,
     }
 }
 
-fn plausibility_code(implausible: &Implausible) -> ErrorCode {
+fn plausibility_code(implausible: &Implausibility) -> ErrorCode {
     match implausible {
-        Implausible::NothingMoves { .. } => ErrorCode::NothingMoves,
-        Implausible::HeadingConstant { .. } => ErrorCode::HeadingConstant,
-        Implausible::RudderInDegrees { .. }
-        | Implausible::RudderInRadians { .. }
-        | Implausible::HeadingInDegrees { .. }
-        | Implausible::HeadingInRadians { .. } => ErrorCode::AngleUnit,
-        Implausible::YawRateInMinutes { .. } | Implausible::YawRateUnit { .. } => ErrorCode::YawRateUnit,
-        Implausible::TwoInputs { .. } => ErrorCode::TwoInputs,
-        Implausible::YawRateSign { .. } => ErrorCode::YawRateSign,
-        Implausible::TurnsAgainstRudder { .. } | Implausible::RudderFlipped { .. } => ErrorCode::RudderSign,
+        Implausibility::NothingMoves { .. } => ErrorCode::NothingMoves,
+        Implausibility::HeadingConstant { .. } => ErrorCode::HeadingConstant,
+        Implausibility::RudderInDegrees { .. }
+        | Implausibility::RudderInRadians { .. }
+        | Implausibility::HeadingInDegrees { .. }
+        | Implausibility::HeadingInRadians { .. } => ErrorCode::AngleUnit,
+        Implausibility::YawRateInMinutes { .. } | Implausibility::YawRateUnit { .. } => ErrorCode::YawRateUnit,
+        Implausibility::TwoInputs { .. } => ErrorCode::TwoInputs,
+        Implausibility::YawRateSign { .. } => ErrorCode::YawRateSign,
+        Implausibility::TurnsAgainstRudder { .. } | Implausibility::RudderFlipped { .. } => ErrorCode::RudderSign,
     }
 }
 

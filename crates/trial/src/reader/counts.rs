@@ -5,7 +5,7 @@ use document::{Warning, WarningCode};
 use ship::angle::DEGREE;
 
 use super::error::Problem;
-use super::layout::{Content, RawColumn};
+use super::layout::{ColumnContent, RawColumn};
 use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
 use crate::cleaning::{MAX_IMPOSSIBLE_SHARE, MIN_IMPOSSIBLE_RUDDER_RAD};
@@ -25,11 +25,11 @@ const MIN_TENTHS_RATIO: f64 = 5.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Numbers {
     /// Parts of a degree: the number of parts to a degree.
-    Parts(f64),
+    PartsOfDegree(f64),
     /// Counts of a converter: the count at zero.
-    Counts(f64),
+    ConverterCounts(f64),
     /// Neither parts of a degree nor counts.
-    NoAngle,
+    ImpossibleAngle,
 }
 
 /// Refuses rudder and heading whose numbers are not angles in the unit of their columns.
@@ -37,8 +37,8 @@ pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Pro
     let column_of = |channel: Channel| {
         // Radians and columns with a scale in the sidecar are not checked.
         let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
-        let is_channel = |content: Content| match content {
-            Content::Channel(held, factor) => held == channel && is_in_degrees(factor),
+        let is_channel = |content: ColumnContent| match content {
+            ColumnContent::Channel(held, factor) => held == channel && is_in_degrees(factor),
             _ => false,
         };
         columns.iter().find(|column| is_channel(column.content))
@@ -47,9 +47,11 @@ pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Pro
         let (low, high) = extremes(column.values.iter().map(|value| value.to_degrees().round()));
         let (column, largest) = (column.name.clone(), column.largest);
         Err(match numbers {
-            Numbers::Parts(parts) => Problem::Parts { line, column, quantity, largest, parts, scale: 1.0 / parts },
-            Numbers::Counts(zero) => Problem::Counts { line, column, quantity, low, high, zero },
-            Numbers::NoAngle => Problem::NoAngle { line, column, quantity, largest },
+            Numbers::PartsOfDegree(parts) => {
+                Problem::PartsOfDegree { line, column, quantity, largest, parts, scale: 1.0 / parts }
+            }
+            Numbers::ConverterCounts(zero) => Problem::ConverterCounts { line, column, quantity, low, high, zero },
+            Numbers::ImpossibleAngle => Problem::ImpossibleAngle { line, column, quantity, largest },
         })
     };
     let rudder = column_of(Channel::Rudder).or_else(|| column_of(Channel::RudderOrder));
@@ -57,7 +59,7 @@ pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Pro
         return refusal(rudder, "rudder angle", numbers);
     }
     match column_of(Channel::Heading).filter(|heading| is_in_tenths(heading, rudder)) {
-        Some(heading) => refusal(heading, "heading", Numbers::Parts(10.0)),
+        Some(heading) => refusal(heading, "heading", Numbers::PartsOfDegree(10.0)),
         None => Ok(()),
     }
 }
@@ -82,9 +84,9 @@ fn rudder_numbers(rudder: &RawColumn) -> Option<Numbers> {
     let has_zero = low <= 0.1 * largest && high >= -0.1 * largest;
     let parts = [10.0, 100.0].into_iter().find(|parts| largest <= parts * MAX_RUDDER_DEG);
     Some(match parts {
-        Some(parts) if rudder.is_whole && has_zero => Numbers::Parts(parts),
-        _ if rudder.is_whole && !has_zero => Numbers::Counts((0.5 * (low + high)).round()),
-        _ => Numbers::NoAngle,
+        Some(parts) if rudder.is_whole && has_zero => Numbers::PartsOfDegree(parts),
+        _ if rudder.is_whole && !has_zero => Numbers::ConverterCounts((0.5 * (low + high)).round()),
+        _ => Numbers::ImpossibleAngle,
     })
 }
 
@@ -107,11 +109,12 @@ fn is_in_tenths(heading: &RawColumn, rudder: Option<&RawColumn>) -> bool {
     }
 }
 
-/// Gives the rudder its sign from a column of sides.
+/// Changes the sign of the rudder by a column of sides, port negative, and returns the warning. `None`, and no change,
+/// unless there is exactly one such column and the rudder has no negative angle.
 pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     let is_side = |column: &RawColumn| {
         let (low, high) = extremes(column.values.iter().copied());
-        column.content == Content::Unknown
+        column.content == ColumnContent::Unknown
             && column.sides > 0
             && column.last.is_none()
             && column.text == 0
@@ -119,7 +122,8 @@ pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     };
     let sides: Vec<usize> = (0..columns.len()).filter(|&index| is_side(&columns[index])).collect();
     let [side] = sides[..] else { return None };
-    let is_rudder = |raw: &RawColumn| matches!(raw.content, Content::Channel(Channel::Rudder, factor) if factor > 0.0);
+    let is_rudder =
+        |raw: &RawColumn| matches!(raw.content, ColumnContent::Channel(Channel::Rudder, factor) if factor > 0.0);
     let rudder = columns.iter().position(is_rudder)?;
     if !columns[rudder].values.iter().all(|value| value.is_nan() || *value >= 0.0) {
         return None;
@@ -132,7 +136,7 @@ pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
     Some(WarningCode::TurnedSign.warning(text))
 }
 
-/// Refuses a time in milliseconds or microseconds since 1970 under a name in seconds.
+/// Refuses a time in seconds whose first value is a present date in milliseconds or microseconds since 1970.
 pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
     let unit = [(1e-3, "ms"), (1e-6, "us")]
         .into_iter()

@@ -1,10 +1,10 @@
-//! First draft of a sidecar for a table: every column with its meaning, guessed or certain, for a person to check.
+//! Draft of a sidecar for a table: every column with its meaning, guessed or certain, for the user to check.
 
 use std::path::Path;
 
 use super::error::{Problem, ReadError};
 use super::head;
-use super::input::{self, Content};
+use super::input::{self, FileContent};
 use super::limits::is_comment;
 use super::lines::Lines;
 use crate::cells::{CellContent, Separator, parse_cell};
@@ -17,15 +17,15 @@ use crate::wording::shortened;
 /// Number of rows whose values are summarised.
 const SUMMARISED_ROWS: usize = 1000;
 
-/// Draft of a sidecar for the table at `path`; columns without names are described by their index.
+/// Text of the draft of a sidecar for the table at `path`; columns without names are described by their index.
 ///
 /// Fails as the reader does up to the header; for sentences, which require no sidecar; and for a line within the first
 /// thousand rows that cannot be read.
 pub fn draft_sidecar(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let open = || match input::open(path).map_err(fault)? {
-        (Content::Table(table), _) => Ok(table),
-        (Content::Sentences(_) | Content::Messages(..), _) => Err(fault(Problem::NeedsNoSidecar)),
+        (FileContent::Table(table), _) => Ok(table),
+        (FileContent::Sentences(_) | FileContent::Messages(..), _) => Err(fault(Problem::NeedsNoSidecar)),
     };
     let table = open()?;
     let declared = table.is_generated.then_some(Separator::Tab);
@@ -80,7 +80,7 @@ fn description(name: &str, quoted: &str, meaning: Option<ColumnMeaning>) -> (Str
             (format!("The name {quoted} states quantity and unit; no description is needed."), None)
         }
         Some(ColumnMeaning::Channel(channel, Some(unit))) => (recognised(), Some(channel.name_in(unit))),
-        Some(ColumnMeaning::OverGround(unit)) => {
+        Some(ColumnMeaning::SpeedOverGround(unit)) => {
             let remark = "GUESS: a speed over ground; check the unit, or ignore the column if there is a current.";
             (remark.to_owned(), Some(Channel::Speed.name_in(unit.unwrap_or(Unit::Knot))))
         }
@@ -96,7 +96,7 @@ fn description(name: &str, quoted: &str, meaning: Option<ColumnMeaning>) -> (Str
         Some(ColumnMeaning::Date | ColumnMeaning::Latitude | ColumnMeaning::Longitude) => {
             (format!("{quoted} is recognised by its name; no description is needed."), None)
         }
-        Some(ColumnMeaning::Course) => {
+        Some(ColumnMeaning::CourseOverGround) => {
             (format!("{quoted} is the course over ground, not the heading; it is not used."), None)
         }
         None => (format!("{quoted} is not recognised; if the column is needed, say what it holds:"), None),

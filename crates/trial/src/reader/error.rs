@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::channel::Channel;
 use crate::file::FileError;
-use crate::plausibility::Implausible;
+use crate::plausibility::Implausibility;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
 use crate::wording::{interval_end, listed, rounded_to_thousandth};
@@ -29,7 +29,7 @@ impl ReadError {
         ReadError::Table { file: file.to_path_buf(), problem }
     }
 
-    /// Message without content of the file, for a reader other than the person who named it.
+    /// Message without content of the file, for readers other than the user who named it.
     pub fn without_content(&self) -> String {
         match self {
             Self::Table { problem: Problem::File(_), .. } => self.to_string(),
@@ -41,12 +41,12 @@ impl ReadError {
     }
 }
 
-/// The key `is` of a sidecar for an angle in degrees.
-fn is_angle(quantity: &str) -> String {
+/// Text of the sidecar key `is` for an angle in degrees: ` is = "rudder_deg"`.
+fn angle_key_text(quantity: &str) -> String {
     format!(" is = \"{}_deg\"", quantity.split(' ').next().unwrap_or_default())
 }
 
-/// Problem of a table. Lines count from 1 as in editors.
+/// Problem of a table or a log. Lines count from 1 as in editors.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Problem {
@@ -118,7 +118,7 @@ pub enum Problem {
     /// Format that is recognised but not read.
     #[error("this is {format}; {cure}")]
     Format { format: &'static str, cure: &'static str },
-    /// Damaged file of a known format.
+    /// Damaged file of a recognised format.
     #[error("this is {format} and cannot be read: {damage}; it is damaged or cut short: copy or export it again")]
     Damaged { format: &'static str, damage: String },
     /// File of a table format without a table.
@@ -136,31 +136,31 @@ pub enum Problem {
          {}, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
         channel.accepted_names(), channel.column_name()
     )]
-    OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
+    MissingUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
     /// Tenths or hundredths of a degree.
     #[error(
         "line {line}: the {quantity} `{column}` has whole numbers up to {largest}, which are not degrees: they look like \
          {} of a degree; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = {scale}{}",
         if *parts == 10.0 { "tenths" } else { "hundredths" },
-        is_angle(quantity)
+        angle_key_text(quantity)
     )]
-    Parts { line: usize, column: String, quantity: &'static str, largest: f64, parts: f64, scale: f64 },
+    PartsOfDegree { line: usize, column: String, quantity: &'static str, largest: f64, parts: f64, scale: f64 },
     /// Counts of a converter.
     #[error(
         "line {line}: the {quantity} `{column}` has whole numbers from {low} to {high}, which are not degrees: they look \
          like counts of a converter about {zero}; write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" \
          zero = {zero} scale = 0.1{}, with the count at rudder amidships and the degrees per count, from the two stops",
-        is_angle(quantity)
+        angle_key_text(quantity)
     )]
-    Counts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
+    ConverterCounts { line: usize, column: String, quantity: &'static str, low: f64, high: f64, zero: f64 },
     /// Numbers that are neither degrees nor parts of them.
     #[error(
         "line {line}: the {quantity} `{column}` reaches {}, which is impossible in degrees; if its numbers have another \
          scale, write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" scale = 0.1{}, with the degrees per unit",
         ShortNumber::rounded(*largest, 6),
-        is_angle(quantity)
+        angle_key_text(quantity)
     )]
-    NoAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
+    ImpossibleAngle { line: usize, column: String, quantity: &'static str, largest: f64 },
     /// Milliseconds or microseconds since 1970 under a name in seconds.
     #[error(
         "line {line}: the time `{column}` begins at {first}, which is after the year 2100 in seconds, and a present date in \
@@ -172,7 +172,7 @@ pub enum Problem {
         "line {line}: the time `{column}` has no unit, and in seconds the ship would turn impossibly fast or slowly; name \
          it t_s, t_ms or t_min, or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
     )]
-    OpenTime { line: usize, column: String },
+    MissingTimeUnit { line: usize, column: String },
     /// Cell that should be a stamp.
     #[error(
         "line {line}, column `{column}`: found `{value}`, expected a date and time such as `2026-11-20T14:03:05.2` or \
@@ -184,7 +184,7 @@ pub enum Problem {
         "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write \
          dates as 2026-11-20"
     )]
-    EitherMonth { line: usize, value: String },
+    AmbiguousDate { line: usize, value: String },
     /// Two columns for one quantity.
     #[error(
         "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one of them, or write `ignore = \
@@ -205,7 +205,7 @@ pub enum Problem {
         "line {line} has {cells} cells, expected {expected} as in the first line of the table; correct the row, or the \
          separator in a sidecar NAME.trial.toml"
     )]
-    Cells { line: usize, cells: usize, expected: usize },
+    WrongCellCount { line: usize, cells: usize, expected: usize },
     /// Decreasing time.
     #[error(
         "line {line}: time runs backwards, {time} s after {before} s; sort or cut the file, or rebuild time from its step \
@@ -233,7 +233,7 @@ pub enum Problem {
     /// Requested number without a manoeuvre.
     #[error("there is no manoeuvre {number}; `study find {file}` lists {count}")]
     NoManoeuvre { file: String, number: usize, count: usize },
-    /// Several zig-zags without a selected one; a line for each.
+    /// Several zig-zags and no selection; a line for each.
     #[error("there are {count} zig-zags in this log; choose one:{lines}")]
     SeveralZigZags { count: usize, lines: String },
     /// Too few usable rows.
@@ -281,7 +281,7 @@ pub enum Problem {
     TooManyReadings { line: usize, limit: usize },
     /// Implausible record.
     #[error(transparent)]
-    Implausible(#[from] Implausible),
+    Implausible(#[from] Implausibility),
     /// Columns that are not a record.
     #[error(transparent)]
     Record(#[from] TrialError),

@@ -34,7 +34,7 @@ pub(super) struct Head {
     pub separator: Separator,
     /// First rows with their lines.
     pub rows: Vec<NumberedLine>,
-    /// Number of lines skipped before the names.
+    /// Number of nonempty lines before the names, without those that the sidecar skips.
     pub skipped: usize,
 }
 
@@ -50,7 +50,7 @@ impl Head {
     }
 }
 
-/// Reads the nonempty lines below the first `skipped`, and the comment above them.
+/// First nonempty lines below the first `skipped`, at most [`HEAD_LINES`], and the last comment above them.
 fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedLine>, NumberedLine), Problem> {
     while lines.number() < skipped && lines.skip()? {}
     let (mut begin, mut comment) = (Vec::new(), NumberedLine::default());
@@ -71,7 +71,9 @@ fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedL
     }
 }
 
-/// Reads a table up to its first row; `declared` is the separator declared by a sidecar.
+/// Head of a table; `declared` is the separator declared by a sidecar.
+///
+/// Fails for an empty file, a table without lines below the skipped lines, and numbers in place of a header.
 pub(super) fn find<R: Read>(
     lines: &mut Lines<R>,
     declared: Option<Separator>,

@@ -23,13 +23,13 @@ const HEAD_LINES: usize = 60;
 pub(super) struct Text<'a> {
     pub bytes: Box<dyn Read + 'a>,
     /// Hash of the file; `None` if it is the hash of the text.
-    pub on_disk: Option<RunningHash>,
+    pub file_hash: Option<RunningHash>,
     /// `true` for a text that was generated here from a binary table.
     pub is_generated: bool,
 }
 
 /// Content of a file.
-pub(super) enum Content<'a> {
+pub(super) enum FileContent<'a> {
     /// Table.
     Table(Text<'a>),
     /// Sentences, one per line.
@@ -53,12 +53,12 @@ pub(super) fn stem(path: &Path) -> String {
 }
 
 /// Opens a file and recognises its content. The size (bytes) is `None` for a pipe, and if the text has another length
-/// than the file.
-pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Problem> {
+/// than the file. Fails as [`file::open`] and [`detect_content`] do.
+pub(super) fn open(path: &Path) -> Result<(FileContent<'static>, Option<u64>), Problem> {
     let file = file::open(path, RECORD_FILE)?;
     let (size, content) = (file.size, detect_content(Box::new(file))?);
-    let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
-    let size = size.filter(|_| text.on_disk.is_none());
+    let (FileContent::Table(text) | FileContent::Sentences(text) | FileContent::Messages(text, _)) = &content;
+    let size = size.filter(|_| text.file_hash.is_none());
     Ok((content, size))
 }
 
@@ -72,12 +72,12 @@ fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a
 /// Recognises the content of a file.
 ///
 /// Fails for formats that are recognised but not read, and for damaged compressed data.
-pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Problem> {
+pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<FileContent<'a>, Problem> {
     let (mut first, mut bytes) = peek(input)?;
-    let mut on_disk = None;
+    let mut file_hash = None;
     if first.starts_with(&[0x1f, 0x8b]) {
         let (hashed, hash) = HashingReader::new(bytes);
-        on_disk = Some(hash);
+        file_hash = Some(hash);
         let unpacked = LimitedReader::new(Box::new(MultiGzDecoder::new(hashed)), RECORD_FILE, None);
         (first, bytes) = peek(Box::new(unpacked))?;
     }
@@ -95,8 +95,12 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a
     if let Some(kind) = BinaryFormat::detect(&first) {
         let mut all = Vec::new();
         bytes.read_to_end(&mut all).map_err(FileError::from)?;
-        let hash = on_disk.unwrap_or_else(|| RunningHash::from_bytes(&all));
-        return Ok(Content::Table(Text { bytes: kind.read_as_text(all)?, on_disk: Some(hash), is_generated: true }));
+        let hash = file_hash.unwrap_or_else(|| RunningHash::from_bytes(&all));
+        return Ok(FileContent::Table(Text {
+            bytes: kind.read_as_text(all)?,
+            file_hash: Some(hash),
+            is_generated: true,
+        }));
     }
     match first.as_slice() {
         [0xd0, 0xcf, 0x11, 0xe0, ..] => refused("an old spreadsheet (XLS)", AS_CSV),
@@ -114,11 +118,11 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a
             if format.is_none() && !has_sentence && messages::is_python_can(lines) {
                 return refused(PYTHON_CAN, CONVERTED);
             }
-            let text = Text { bytes, on_disk, is_generated: false };
+            let text = Text { bytes, file_hash, is_generated: false };
             Ok(match format {
-                _ if has_sentence => Content::Sentences(text),
-                Some(format) => Content::Messages(text, format),
-                None => Content::Table(text),
+                _ if has_sentence => FileContent::Sentences(text),
+                Some(format) => FileContent::Messages(text, format),
+                None => FileContent::Table(text),
             })
         }
     }

@@ -74,7 +74,7 @@ impl Log {
     }
 
     /// Relation of a transformed channel x to a reference y: y = c₀ + c₁ t + s x(t + lag), with the lag that gives the
-    /// maximum explained share. `None` without one of the channels, and if that share is below [`MIN_SHARE`].
+    /// maximum explained share. `None` if either channel is absent, and if that share is below [`MIN_SHARE`].
     fn relation(
         &self,
         [channel, reference]: [Channel; 2],
@@ -143,8 +143,8 @@ mod tests {
         let all = log(1.0, |row| !(100..109).contains(&row)).inspect();
         let heading = &inspected(&all, Channel::Heading).readings;
         assert_eq!((heading.source.as_deref(), heading.count, heading.interval), (Some("heading_deg"), 391, Some(1.0)));
-        assert_eq!(heading.longest, Some([99.0, 10.0]));
-        assert!(heading.step.is_some_and(|step| (step.to_degrees() - 0.1).abs() < 1e-9), "{heading:?}");
+        assert_eq!(heading.longest_gap, Some([99.0, 10.0]));
+        assert!(heading.smallest_change.is_some_and(|change| (change.to_degrees() - 0.1).abs() < 1e-9), "{heading:?}");
         assert!(
             heading.wraps.is_some_and(|wraps| wraps > 0) && inspected(&all, Channel::Speed).readings.wraps.is_none()
         );
@@ -158,7 +158,7 @@ mod tests {
         let relation = rudder.relation.expect("it has an order");
         assert!((relation.scale - 1.0).abs() < 0.05, "{relation:?}");
         assert!(relation.lag.is_some_and(|lag| (lag - 2.0).abs() < 0.3), "{relation:?}");
-        assert_eq!(inspected(&all, Channel::Speed).readings.step, None);
+        assert_eq!(inspected(&all, Channel::Speed).readings.smallest_change, None);
     }
 
     /// Contradictory signs are reported and not refused.

@@ -3,7 +3,7 @@
 use estimation::statistics::upper_median;
 
 /// Spreads rows with a shared stamp evenly over the time to the next stamp. Returns the typical number of rows per
-/// stamp; `None` for fewer than three stamps, and if at most one pair of rows shares a stamp.
+/// stamp; `None` for fewer than three stamps, which are unchanged, and if at most a single pair of rows shares a stamp.
 ///
 /// `time` (s) does not decrease. The width of a stamp is the usual step between two stamps, so that gaps stay gaps. The
 /// first and the last stamp may be incomplete: their rows fill the end and the beginning of their width.

@@ -17,7 +17,7 @@ use crate::wording::shortened;
 
 /// Content of a column.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) enum Content {
+pub(super) enum ColumnContent {
     /// Time; the factor to seconds.
     Time(f64),
     /// Stamps of date and time, or of the time of day.
@@ -37,7 +37,7 @@ pub(super) enum Content {
     Ignored,
 }
 
-impl Content {
+impl ColumnContent {
     /// `true` for a column with kept values.
     pub fn is_kept(self) -> bool {
         !matches!(self, Self::Time(_) | Self::Stamp | Self::Date | Self::Ignored)
@@ -61,9 +61,9 @@ enum Rank {
 #[derive(Debug, Default)]
 pub(super) struct RawColumn {
     pub name: String,
-    pub content: Content,
+    pub content: ColumnContent,
     /// `true` for a column without a unit; until the unit is determined, values are in the unit of written files.
-    pub open: bool,
+    pub is_unitless: bool,
     /// Meaning with its certainty; `None` for an unknown or omitted column.
     claim: Option<(ColumnMeaning, Rank)>,
     /// Factor of the numbers declared by the sidecar, else 1.
@@ -149,7 +149,7 @@ impl Layout {
         if rebuilt {
             let is_time = |meaning| matches!(meaning, ColumnMeaning::Time(_) | ColumnMeaning::Date);
             let times = layout.columns.iter_mut().filter(|column| column.claims(is_time));
-            times.for_each(|column| column.content = Content::Ignored);
+            times.for_each(|column| column.content = ColumnContent::Ignored);
         } else {
             layout.settle_time(head).map_err(fault)?;
         }
@@ -169,7 +169,7 @@ impl Layout {
         self.columns.iter().map(|column| column.name.clone()).collect()
     }
 
-    fn find(&self, wanted: impl Fn(Content) -> bool) -> Option<usize> {
+    fn find(&self, wanted: impl Fn(ColumnContent) -> bool) -> Option<usize> {
         self.columns.iter().position(|column| wanted(column.content))
     }
 
@@ -178,19 +178,19 @@ impl Layout {
         self.column_of(if self.order_is_rudder { Channel::RudderOrder } else { Channel::Rudder })
     }
 
-    /// Index of the column of a channel; `None` without one.
+    /// Index of the column of a channel; `None` without such a column.
     pub fn column_of(&self, wanted: Channel) -> Option<usize> {
-        self.find(|content| matches!(content, Content::Channel(channel, _) if channel == wanted))
+        self.find(|content| matches!(content, ColumnContent::Channel(channel, _) if channel == wanted))
     }
 
-    /// Index of the column of time; `None` without one.
+    /// Index of the column of time; `None` without such a column.
     pub fn time_column(&self) -> Option<usize> {
-        self.find(|content| matches!(content, Content::Time(_) | Content::Stamp))
+        self.find(|content| matches!(content, ColumnContent::Time(_) | ColumnContent::Stamp))
     }
 
-    /// Index of the column of the dates that belong to times of day; `None` without one.
+    /// Index of the column of the dates that belong to times of day; `None` without such a column.
     pub fn date_column(&self) -> Option<usize> {
-        self.find(|content| content == Content::Date)
+        self.find(|content| content == ColumnContent::Date)
     }
 
     /// Applies the descriptions of the sidecar, which replace the meaning of the names.
@@ -236,10 +236,10 @@ impl Layout {
             }
             (column.scale, column.zero) = (described.scale, described.zero);
             match (described.meaning, &mut column.claim) {
-                _ if described.ignore => (column.content, column.claim) = (Content::Ignored, None),
+                _ if described.ignore => (column.content, column.claim) = (ColumnContent::Ignored, None),
                 (Some(meaning), claim) => *claim = Some((meaning, Rank::Described)),
                 (None, Some((_, rank))) => *rank = (*rank).min(Rank::Contract),
-                (None, None) => return fault(SidecarProblem::NameSaysNothing { name }),
+                (None, None) => return fault(SidecarProblem::UnknownColumnName { name }),
             }
         }
         Ok(())
@@ -250,7 +250,7 @@ impl Layout {
         for channel in Channel::ALL {
             let claim = |(index, column): (usize, &RawColumn)| match column.claim? {
                 (ColumnMeaning::Channel(claimed, unit), rank) if claimed == channel => Some((rank, index, unit)),
-                (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
+                (ColumnMeaning::SpeedOverGround(unit), _) if channel == Channel::Speed => {
                     Some((Rank::Substitute, index, unit))
                 }
                 _ => None,
@@ -272,23 +272,23 @@ impl Layout {
                 continue;
             }
             let factor = unit.unwrap_or(channel.written_unit()).si_factor();
-            let content = |scale: f64| Content::Channel(channel, scale * factor);
+            let content = |scale: f64| ColumnContent::Channel(channel, scale * factor);
             self.settle(index, rank, unit, content);
         }
         for column in &mut self.columns {
             match column.claim {
-                Some((ColumnMeaning::Latitude, _)) => column.content = Content::Latitude,
-                Some((ColumnMeaning::Longitude, _)) => column.content = Content::Longitude,
+                Some((ColumnMeaning::Latitude, _)) => column.content = ColumnContent::Latitude,
+                Some((ColumnMeaning::Longitude, _)) => column.content = ColumnContent::Longitude,
                 _ => {}
             }
         }
         Ok(())
     }
 
-    fn settle(&mut self, index: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> Content) {
+    fn settle(&mut self, index: usize, rank: Rank, unit: Option<Unit>, content: impl Fn(f64) -> ColumnContent) {
         let column = &mut self.columns[index];
         column.content = content(column.scale);
-        column.open = unit.is_none() && column.content != Content::Stamp;
+        column.is_unitless = unit.is_none() && column.content != ColumnContent::Stamp;
         if rank >= Rank::Usual {
             self.recognised.push(column.name.clone());
         }
@@ -336,16 +336,18 @@ impl Layout {
         if let Some(&(_, _, rival, _)) = candidates.get(1).filter(|(r, w, ..)| (*r, *w) == (rank, worth)) {
             return Err(self.duplicate("time", index, rival));
         }
-        candidates[1..].iter().for_each(|&(_, _, unused, _)| self.columns[unused].content = Content::Ignored);
+        candidates[1..].iter().for_each(|&(_, _, unused, _)| self.columns[unused].content = ColumnContent::Ignored);
         match stamp(index).filter(|_| !is_number(index)) {
             Some(first) => {
-                self.settle(index, rank, unit, |_| Content::Stamp);
+                self.settle(index, rank, unit, |_| ColumnContent::Stamp);
                 let dates = self.columns.iter().position(|column| column.claims(|kind| kind == ColumnMeaning::Date));
                 if let Some(date) = dates.filter(|&date| !first.has_date() && date != index && stamp(date).is_some()) {
-                    self.columns[date].content = Content::Date;
+                    self.columns[date].content = ColumnContent::Date;
                 }
             }
-            None => self.settle(index, rank, unit, |scale| Content::Time(scale * unit.map_or(1.0, Unit::si_factor))),
+            None => {
+                self.settle(index, rank, unit, |scale| ColumnContent::Time(scale * unit.map_or(1.0, Unit::si_factor)))
+            }
         }
         Ok(())
     }
@@ -361,7 +363,7 @@ impl Layout {
             return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
         }
         if self.column_of(Channel::Heading).is_none() && self.column_of(Channel::YawRate).is_none() {
-            let is_course = |column: &&RawColumn| column.claims(|meaning| meaning == ColumnMeaning::Course);
+            let is_course = |column: &&RawColumn| column.claims(|meaning| meaning == ColumnMeaning::CourseOverGround);
             return match self.columns.iter().find(is_course) {
                 Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),
                 None => missing([Channel::Heading, Channel::YawRate], "heading or the yaw rate"),
@@ -376,8 +378,10 @@ impl Layout {
 fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
     let named = column_meaning(name)?;
     let rank = if quantity_unit_meaning(name).is_some() { Rank::Contract } else { Rank::Usual };
-    let open =
-        matches!(named, ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::OverGround(None));
+    let open = matches!(
+        named,
+        ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::SpeedOverGround(None)
+    );
     let complete = match below.filter(|_| open) {
         Some(unit) => with_unit(named, unit)?,
         None => named,

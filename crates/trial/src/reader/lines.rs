@@ -75,7 +75,7 @@ impl<R: Read> Lines<R> {
         self.number
     }
 
-    /// Bytes read so far.
+    /// Number of bytes read so far.
     pub fn consumed(&self) -> u64 {
         self.consumed
     }
@@ -103,7 +103,9 @@ impl<R: Read> Lines<R> {
         Ok((length > 0).then_some((length, whole)))
     }
 
-    /// Skips one line without decoding it; `false` at the end of the file.
+    /// Skips a line without decoding it; `false` at the end of the file.
+    ///
+    /// Fails for UTF-16, for a zero byte, and for a line longer than [`MAX_LINE_BYTES`].
     pub fn skip(&mut self) -> Result<bool, Problem> {
         let Some((length, _)) = self.take_line()? else { return Ok(false) };
         let line = self.number;
@@ -119,7 +121,8 @@ impl<R: Read> Lines<R> {
         Ok(true)
     }
 
-    /// Next line without its end; `None` at the end of the file.
+    /// Next line without its end; `None` at the end of the file. Fails as [`skip`](Self::skip) does, and for bytes that
+    /// are not text in the encoding.
     pub fn next_line(&mut self) -> Result<Option<&str>, Problem> {
         if !self.skip()? {
             return Ok(None);
@@ -157,7 +160,7 @@ impl<R: Read> Lines<R> {
     }
 }
 
-/// SHA-256 of some bytes, hexadecimal.
+/// SHA-256 of bytes, 64 hexadecimal digits.
 pub fn sha256(bytes: &[u8]) -> String {
     RunningHash::from_bytes(bytes).finish()
 }

@@ -10,7 +10,7 @@ use super::assemble::{
     add_derived_channels, check_channels, interpolate_rudder, merge_series, split_columns, without_duplicates,
 };
 use super::error::{Problem, ReadError};
-use super::input::{self, Content};
+use super::input::{self, FileContent};
 use super::lines::{self, Lines};
 use super::messages;
 use super::nmea;
@@ -80,27 +80,27 @@ impl Log {
 
     fn from_content(
         path: &Path,
-        content: Content,
+        content: FileContent,
         size: Option<u64>,
         sidecar: Option<Sidecar>,
         whole: bool,
     ) -> Result<Self, ReadError> {
         let sidecar = sidecar.unwrap_or_default();
-        let (Content::Table(text) | Content::Sentences(text) | Content::Messages(text, _)) = &content;
-        let on_disk = text.on_disk.clone();
+        let (FileContent::Table(text) | FileContent::Sentences(text) | FileContent::Messages(text, _)) = &content;
+        let file_hash = text.file_hash.clone();
         let log = match content {
-            Content::Table(text) => table::read(path, text, size, &sidecar, whole)?,
+            FileContent::Table(text) => table::read(path, text, size, &sidecar, whole)?,
             _ if !sidecar.columns.is_empty() => {
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
-            Content::Sentences(text) => {
+            FileContent::Sentences(text) => {
                 of_series(path, nmea::read(Lines::new(text.bytes, Encoding::Utf8)), &sidecar, whole)?
             }
-            Content::Messages(text, format) => {
+            FileContent::Messages(text, format) => {
                 of_series(path, messages::read(Lines::new(text.bytes, Encoding::Utf8), &format), &sidecar, whole)?
             }
         };
-        let sha256 = on_disk.map_or(log.sha256, lines::RunningHash::finish);
+        let sha256 = file_hash.map_or(log.sha256, lines::RunningHash::finish);
         let mut log = Self { path: path.to_path_buf(), sidecar, sha256, ..log };
         if whole {
             log.complete()?;
@@ -288,7 +288,8 @@ impl Log {
 
 /// Offset of the second clock from the first, s.
 fn offset(first: &Clock, second: &Clock) -> f64 {
-    let zone = first.zone.zip(second.zone).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
+    let zone =
+        first.utc_offset_min.zip(second.utc_offset_min).map_or(0.0, |(first, second)| 60.0 * f64::from(first - second));
     let seconds = second.second - first.second + zone;
     match first.day.zip(second.day) {
         Some((first, second)) => seconds + SECONDS_PER_DAY * (second - first) as f64,
@@ -297,7 +298,7 @@ fn offset(first: &Clock, second: &Clock) -> f64 {
     }
 }
 
-/// Hash of two hashes.
+/// SHA-256 of two texts with a blank between them, hexadecimal.
 fn joined_hash(first: &str, second: &str) -> String {
     lines::sha256(format!("{first} {second}").as_bytes())
 }

@@ -32,12 +32,12 @@ const MAX_RAD: [f64; 2] = [0.8, std::f64::consts::TAU + 0.01];
 
 pub(super) use can::{is_log as is_can_log, is_python_can};
 
-/// Format of the lines of a log.
+/// Format of the lines of a log of messages.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum MessageFormat {
     /// NMEA 2000 messages in the notation of canboat.
     Canboat,
-    /// Table of time, path, value and source, one value per line.
+    /// Table of time, path, value and source with a single value per line, as exported by Signal K.
     Long,
 }
 
@@ -76,7 +76,7 @@ impl MessageLog {
         let value = || shortened(text);
         let stamp = stamp.ok_or_else(|| Problem::NotAStamp { line, column: "timestamp".into(), value: value() })?;
         let at = self.stamps.seconds(stamp).map_err(|fault| match fault {
-            StampFault::EitherMonth => Problem::EitherMonth { line, value: value() },
+            StampFault::AmbiguousDate => Problem::AmbiguousDate { line, value: value() },
             StampFault::NoTime => Problem::NotAStamp { line, column: "timestamp".into(), value: value() },
         })?;
         self.messages += 1;
@@ -137,7 +137,7 @@ impl MessageLog {
 
 /// Reads a log: a series for each channel, and a [`Log`] without columns.
 ///
-/// Fails for an invalid stamp, and if no message contains a used quantity.
+/// Fails for an invalid stamp, for too many readings, and if no message contains a used quantity.
 pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Result<(Vec<Series>, Log), Problem> {
     let mut log = MessageLog::default();
     let (mut canboat, mut table) = (Canboat::default(), None);

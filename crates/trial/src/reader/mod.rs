@@ -3,10 +3,11 @@
 //!
 //! A table has one row per line below a header of `quantity_unit` names (see [`crate::channel`]), separated by commas,
 //! semicolons, tabs or blanks. Lines that start with `#` and empty lines are skipped; a commented header is used if
-//! the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are omitted, so that the
-//! rudder is interpolated between its neighbours; rows without heading are kept. A missing speed is √(u² + v²)
-//! of surge and sway. Sentinels of loggers, impossible rudder angles, repeated values and a frozen heading are
-//! omitted and reported, unless a sidecar has `plausibility = false`. Other tables are described in [`crate::sidecar`].
+//! the rows have none. Headings may wrap; cells may be empty. Rows without time are omitted. A missing rudder angle is
+//! interpolated between its neighbours; rows in a gap of the rudder are omitted. Rows without a heading are kept. A
+//! missing speed is √(u² + v²) of surge and sway. Sentinels of loggers, impossible rudder angles, repeated values and a
+//! frozen heading are omitted and reported, unless a sidecar has `plausibility = false`. A sidecar describes tables
+//! with other names ([`crate::sidecar`]).
 
 mod assemble;
 mod choice;

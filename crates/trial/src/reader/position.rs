@@ -16,8 +16,8 @@ const E2: f64 = 6.694_379_990_14e-3;
 /// and `None` without any position.
 ///
 /// north = M (φ − φ₀) and east = N cos φₘ (λ − λ₀), with the radii of curvature M of the meridian and N of the prime
-/// vertical and the cosine at the mean latitude φₘ. Over 10 miles the error is below a few decimetres away from the
-/// poles.
+/// vertical and the cosine at the mean latitude φₘ. Away from the poles the error over 10 miles is below a few
+/// decimetres.
 pub(super) fn plane_positions(latitude: &[f64], longitude: &[f64]) -> Option<[(Channel, Vec<f64>); 2]> {
     let mut positions = latitude.iter().zip(longitude);
     let (&first_latitude, &first_longitude) = positions.find(|(phi, lambda)| (**phi + **lambda).is_finite())?;

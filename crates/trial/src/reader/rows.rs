@@ -6,7 +6,7 @@ use std::ops::{Range, RangeInclusive};
 use ship::angle::{DEGREE, unwrap_heading};
 
 use super::error::Problem;
-use super::layout::{Content, Layout};
+use super::layout::{ColumnContent, Layout};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
 use crate::cells::{CellContent, Separator, parse_cell};
 use crate::channel::Channel;
@@ -16,15 +16,15 @@ use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::wording::shortened;
 
-/// Counts of rows, for warnings.
+/// Numbers of rows by kind, for warnings.
 #[derive(Debug, Default)]
-pub(super) struct Counts {
+pub(super) struct RowCounts {
     pub rows: usize,
     pub rows_without_time: usize,
     /// Rows with neither rudder nor heading nor yaw rate.
     pub empty_rows: usize,
     pub repeated_rows: usize,
-    /// Times out of order with their neighbours.
+    /// Times out of order with their neighbours, s.
     pub stray_times: Vec<f64>,
     pub short_rows: usize,
     pub decimal_commas: usize,
@@ -35,7 +35,7 @@ pub(super) struct Counts {
 struct Before {
     /// Time (s) and values of the last row with a time, as read; `None` before the first such row.
     last: Option<(f64, Vec<f64>)>,
-    /// Time of the row before the last one, s; `None` if there was a single row.
+    /// Time of the last row but one, s; `None` if there was a single row.
     earlier: Option<f64>,
     /// `true` if the last row was kept.
     kept: bool,
@@ -66,11 +66,11 @@ pub(super) struct Rows<'a> {
     row: Vec<f64>,
     before: Before,
     last_heading: Option<f64>,
-    /// Number of rows of the part with time and one of the wanted channels.
+    /// Number of rows of the part with a time and at least one of the `wanted` columns.
     pub(super) usable_rows: usize,
     /// First and last time in the file, s; `None` before the first.
     pub(super) span: Option<(f64, f64)>,
-    pub(super) counts: Counts,
+    pub(super) counts: RowCounts,
 }
 
 impl<'a> Rows<'a> {
@@ -79,11 +79,11 @@ impl<'a> Rows<'a> {
         let mut wanted: Vec<usize> = main.into_iter().flatten().collect();
         if wanted.is_empty() {
             // A table with other channels of a record.
-            let is_channel = |&place: &usize| matches!(layout.columns[place].content, Content::Channel(..));
+            let is_channel = |&place: &usize| matches!(layout.columns[place].content, ColumnContent::Channel(..));
             wanted.extend((0..layout.columns.len()).filter(is_channel));
         }
         let time_place = layout.time_column();
-        let stamped = time_place.is_some_and(|place| layout.columns[place].content == Content::Stamp);
+        let stamped = time_place.is_some_and(|place| layout.columns[place].content == ColumnContent::Stamp);
         Self {
             separator,
             sidecar,
@@ -103,7 +103,7 @@ impl<'a> Rows<'a> {
             last_heading: None,
             usable_rows: 0,
             span: None,
-            counts: Counts::default(),
+            counts: RowCounts::default(),
             layout,
         }
     }
@@ -135,6 +135,9 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds a line: a row, a comment or an empty line.
+    ///
+    /// Fails for a cell that is neither a number nor a stamp, a wrong number of cells, and a time that runs backwards
+    /// or repeats with other values.
     pub fn add(&mut self, line: &str, number: usize) -> Result<(), Problem> {
         if is_comment(line) {
             return Ok(());
@@ -198,7 +201,7 @@ impl<'a> Rows<'a> {
         };
         self.whole_seconds &= !stamp.has_fraction();
         stamps.seconds(stamp).map_err(|fault| match fault {
-            StampFault::EitherMonth => Problem::EitherMonth { line: number, value: value() },
+            StampFault::AmbiguousDate => Problem::AmbiguousDate { line: number, value: value() },
             StampFault::NoTime => no_stamp(),
         })
     }
@@ -209,24 +212,24 @@ impl<'a> Rows<'a> {
         let surplus = self.cells.get(expected..).is_some_and(|extra| extra.iter().any(|cell| !cell.is_empty()));
         // With blanks between the cells a missing cell cannot be located.
         if surplus || (cells < expected && self.separator == Separator::Blank) {
-            return Err(Problem::Cells { line: number, cells, expected });
+            return Err(Problem::WrongCellCount { line: number, cells, expected });
         }
         self.counts.short_rows += usize::from(cells < expected);
         let checked = self.sidecar.is_checked();
         for (place, column) in self.layout.columns[..expected].iter_mut().enumerate() {
             let text = self.cells.get(place).map_or("", |range| &line[range.clone()]);
             let (channel, factor) = match column.content {
-                Content::Channel(channel, factor) => (Some(channel), factor),
-                Content::Time(factor) => (None, factor),
-                Content::Latitude | Content::Longitude => (None, DEGREE),
-                Content::Unknown => (None, 1.0),
-                Content::Stamp | Content::Date | Content::Ignored => continue,
+                ColumnContent::Channel(channel, factor) => (Some(channel), factor),
+                ColumnContent::Time(factor) => (None, factor),
+                ColumnContent::Latitude | ColumnContent::Longitude => (None, DEGREE),
+                ColumnContent::Unknown => (None, 1.0),
+                ColumnContent::Stamp | ColumnContent::Date | ColumnContent::Ignored => continue,
             };
             let read = match parse_cell(text, self.separator) {
                 CellContent::Text => side(text, channel, self.separator).map_or(CellContent::Text, CellContent::Number),
                 read => read,
             };
-            if let (CellContent::Text, Content::Unknown, Some(sign)) = (read, column.content, side_word(text)) {
+            if let (CellContent::Text, ColumnContent::Unknown, Some(sign)) = (read, column.content, side_word(text)) {
                 column.sides += 1;
                 self.row[place] = sign;
                 continue;
@@ -244,7 +247,7 @@ impl<'a> Rows<'a> {
                     (value - column.zero) * factor
                 }
                 CellContent::Missing => f64::NAN,
-                CellContent::Text if column.content == Content::Unknown => {
+                CellContent::Text if column.content == ColumnContent::Unknown => {
                     column.text += 1;
                     f64::NAN
                 }
@@ -267,7 +270,7 @@ impl<'a> Rows<'a> {
                 parse_cell(text, self.separator).number().unwrap_or(f64::NAN)
             };
             let value = formula.value(&sources.iter().map(number).collect::<Vec<_>>());
-            let Content::Channel(_, factor) = column.content else { continue };
+            let ColumnContent::Channel(_, factor) = column.content else { continue };
             if value.is_finite() {
                 column.count(value);
             }
@@ -275,7 +278,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// `true` for a row later than the last one, or with the same stamp of whole seconds. An exact copy of the last row
+    /// `true` for a row later than the last row, or with the same stamp of whole seconds. An exact copy of the last row
     /// and a single row with a stray time give `false`. Fails if time continues from an earlier time.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;

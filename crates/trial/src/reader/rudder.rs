@@ -14,7 +14,7 @@ use crate::record::Columns;
 /// gaps, and minimum length of a long gap in usual intervals.
 const ON_CHANGE: (usize, usize, f64) = (20, 2, 5.0);
 
-/// Minimum change of such a rudder, except in one of twenty intervals, as a share of its median change; noise has
+/// Minimum change of such a rudder, in at least 95 % of the intervals, as a share of its median change; noise has
 /// smaller changes.
 const MIN_CHANGE_SHARE: f64 = 0.3;
 
@@ -24,8 +24,9 @@ const MAX_HELD_READINGS: f64 = 1000.0;
 /// Fills the gaps of a rudder that the logger writes only when it changes: the last value is repeated at the usual
 /// sampling period. Returns a warning; `None`, and no change, for any other rudder.
 ///
-/// A rudder is taken as written in this way if no reading repeats the previous one, if few changes are much smaller
-/// than the others, and if no change over a long gap exceeds twice the maximum change over a shorter interval.
+/// A rudder is written on change if no reading repeats the previous reading, if at most 5 % of the changes are below
+/// [`MIN_CHANGE_SHARE`] of the median change, and if no change over a long gap exceeds twice the maximum change over a
+/// shorter interval.
 pub(super) fn repeat_held_rudder(columns: &mut Columns) -> Option<Warning> {
     let channel = [Channel::Rudder, Channel::RudderOrder].into_iter().find(|x| columns.channels.contains_key(x))?;
     let values = &columns.channels[&channel];
@@ -81,7 +82,8 @@ pub(super) fn with_earlier_rudder(columns: Columns, late: f64) -> Columns {
     assemble::merge_series(&all)
 }
 
-/// Computes the rudder angle from an order that the gear follows at a rate, deg/s; `false` without an order.
+/// Replaces the rudder angle by that of a gear that follows the order at a rate in deg/s; without an order the column
+/// of the rudder counts as the order. `false`, and no change, without both.
 pub(super) fn follow_order(columns: &mut Columns, rate: f64) -> bool {
     let Columns { time, channels, .. } = columns;
     let order = channels.get(&Channel::RudderOrder).or_else(|| channels.get(&Channel::Rudder)).cloned();

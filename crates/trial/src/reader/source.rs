@@ -77,11 +77,11 @@ pub struct ChannelReadings {
     /// Median interval between readings, s; `None` for fewer than two readings.
     pub interval: Option<f64>,
     /// Beginning and length of the maximum gap between readings, s; `None` for fewer than two readings.
-    pub longest: Option<[f64; 2]>,
+    pub longest_gap: Option<[f64; 2]>,
     /// Minimum and maximum reading.
     pub range: [f64; 2],
     /// Minimum change between two successive readings, without repetitions; `None` for a constant channel.
-    pub step: Option<f64>,
+    pub smallest_change: Option<f64>,
     /// Number of times that a heading crosses north; `None` for any other channel.
     pub wraps: Option<usize>,
 }
@@ -102,9 +102,9 @@ impl ChannelReadings {
             source,
             count: read.len(),
             interval: upper_median(gaps().map(|[_, length]| length)),
-            longest: longest.map(|[begin, length]| [begin + shift, length]),
+            longest_gap: longest.map(|[begin, length]| [begin + shift, length]),
             range: [low, high],
-            step: changes.min_by(f64::total_cmp),
+            smallest_change: changes.min_by(f64::total_cmp),
             wraps: (channel == Channel::Heading).then(crossings),
         }
     }

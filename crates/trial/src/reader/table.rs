@@ -11,7 +11,7 @@ use super::error::{Problem, ReadError};
 use super::head;
 use super::input::Text;
 use super::instants::spread_shared_stamps;
-use super::layout::{Content, Layout, RawColumn};
+use super::layout::{ColumnContent, Layout, RawColumn};
 use super::limits::no_rows_problem;
 use super::lines::Lines;
 use super::position::plane_positions;
@@ -28,7 +28,9 @@ use crate::record::Columns;
 use crate::sidecar::Sidecar;
 use crate::wording::{counted, listed, rounded_to_thousandth, shortened};
 
-/// Reads a table; a `whole` record requires rudder and heading.
+/// Log of a table; a `whole` record requires rudder and heading.
+///
+/// Fails for a table without a header, rows or a required column, and for invalid cells, times and units.
 pub(super) fn read(
     path: &Path,
     input: Text,
@@ -82,7 +84,7 @@ impl Rows<'_> {
             warnings.extend(counts::apply_side_column(&mut self.layout.columns));
         }
         let Layout { columns, recognised, .. } = self.layout;
-        let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.open);
+        let open_time = self.time_place.map(|place| &columns[place]).filter(|column| column.is_unitless);
         let open_time = open_time.map(|column| column.name.clone());
         let (mut channels, mut unknown, mut open, mut names) = (BTreeMap::new(), Vec::new(), Vec::new(), Vec::new());
         let [mut latitude, mut longitude] = [None, None];
@@ -91,17 +93,17 @@ impl Rows<'_> {
             let missing = values.iter().all(|value| value.is_nan());
             match content {
                 // A channel without values counts as absent.
-                Content::Channel(..) if missing => {
+                ColumnContent::Channel(..) if missing => {
                     let text = format!("the column `{}` has no value and is left out", shortened(&name));
                     warnings.push(WarningCode::LeftOut.warning(text));
                 }
-                Content::Channel(channel, _) => {
+                ColumnContent::Channel(channel, _) => {
                     channels.insert(channel, values);
                     names.push((channel, name.clone()));
-                    open.extend(column.open.then_some(UnitlessColumn { channel, name, largest }));
+                    open.extend(column.is_unitless.then_some(UnitlessColumn { channel, name, largest }));
                 }
-                Content::Latitude => latitude = Some(values),
-                Content::Longitude => longitude = Some(values),
+                ColumnContent::Latitude => latitude = Some(values),
+                ColumnContent::Longitude => longitude = Some(values),
                 _ if missing && column.text > 0 => {}
                 _ => unknown.push((name, values)),
             }
@@ -131,7 +133,7 @@ impl Rows<'_> {
     fn check_numbers(&self) -> Result<(), Problem> {
         let Layout { columns, line, .. } = &self.layout;
         let time = self.time_place.map(|place| &columns[place]);
-        if let Some(time) = time.filter(|time| !time.open && time.content == Content::Time(1.0)) {
+        if let Some(time) = time.filter(|time| !time.is_unitless && time.content == ColumnContent::Time(1.0)) {
             counts::check_time(&time.name, self.time.first().copied().unwrap_or_default(), *line)?;
         }
         counts::check_angles(columns, *line)

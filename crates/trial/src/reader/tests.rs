@@ -217,7 +217,10 @@ fn wrong_cells_and_times_are_named_with_their_line() {
     assert!(matches!(refusal, Problem::NotANumber { line: 12, .. }));
     problem(broken(12, "10,inf,10"), &["line 12", "`inf`"]);
     problem(broken(3, "1e999,1,1"), &["line 3", "`t_s`", "`1e999`"]);
-    assert!(matches!(problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]), Problem::Cells { .. }));
+    assert!(matches!(
+        problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]),
+        Problem::WrongCellCount { .. }
+    ));
     problem(table("t_s heading_deg rudder_deg", " ").replacen("\n3 ", "\n", 1), &["line 5 has 2 cells, expected 3"]);
     let single = parse(broken(12, "3.5,1,10")).expect("a single row can be left out");
     assert!(single.warnings[0].text.contains("1 row left out, because the time does not fit"), "{:?}", single.warnings);
@@ -257,7 +260,7 @@ fn records_with_too_little_in_them_are_refused() {
         .map(|(i, line)| if i == 0 { format!("{line},rudder_deg\n") } else { format!("{line},{}\n", -rows[i - 1][2]) })
         .collect();
     let refusal = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
-    assert!(matches!(refusal, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
+    assert!(matches!(refusal, Problem::Implausible(plausibility::Implausibility::RudderFlipped { .. })));
     // The remedy in the message is effective.
     let corrected = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
     assert_eq!(corrected.warnings, []);
@@ -332,7 +335,7 @@ fn a_sidecar_that_does_not_fit_its_table_is_named_with_its_line() {
     let twice = "[[column]]\nindex = 1\nis = \"t_s\"\n[[column]]\nname = \"t_s\"\nis = \"t_min\"\n";
     assert!(matches!(fault(twice, 4, "described twice"), SidecarProblem::DescribedTwice { .. }));
     let headless = "[table]\nheader = false\nskip-lines = 1\n[[column]]\nindex = 3\nflip = true\n";
-    assert!(matches!(fault(headless, 4, "`column_3`"), SidecarProblem::NameSaysNothing { .. }));
+    assert!(matches!(fault(headless, 4, "`column_3`"), SidecarProblem::UnknownColumnName { .. }));
     let outside = parse_with(simple(), "[part]\nfrom-s = 1000\n");
     assert!(matches!(complaint(outside, &["between 0 s and 239 s"]), Problem::EmptyPart { .. }));
     let beyond = parse_with(simple(), "[table]\nskip-lines = 1000\n");
@@ -349,7 +352,7 @@ fn a_table_without_header_is_described_by_index() {
     assert_eq!(trial.time()[..3], [0.0, 0.5, 1.0]);
     assert_eq!(trial.unknown_columns(), [("column_4".to_owned(), vec![7.0; 240])]);
     assert_eq!(trial.particulars().map(|particulars| particulars.length), Some(105.0));
-    assert_eq!(trial.noise().heading, Some(from_deg(0.1)));
+    assert_eq!(trial.noise().heading_sd, Some(from_deg(0.1)));
 }
 
 #[test]
@@ -429,7 +432,7 @@ fn a_declared_calm_stays_with_the_record() {
     let trial = parse_with(simple(), sidecar).expect("complete").trial;
     assert!(trial.is_calm() && trial.scaled_to(Particulars { length: 320.0, speed: 8.0 }).expect("a scale").is_calm());
     let first = trial.time()[0];
-    assert!(trial.without_channels(&[Channel::YawRate]).without_current([0.1; 2]).without_readings(&[first]).is_calm());
+    assert!(trial.without_channels(&[Channel::YawRate]).without_current([0.1; 2]).without_headings(&[first]).is_calm());
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
     let log = Log::from_reader(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
     let part = log.into_interval(first, first + 50.0).expect("a part");

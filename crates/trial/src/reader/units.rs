@@ -13,20 +13,20 @@ use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, count_reversals, mean_rate, range, wraps_at_two_pi_degrees};
 use crate::wording::shortened;
 
-/// Maximum number of a rudder in radians: 45°. A rudder in degrees exceeds it in any manoeuvre.
+/// Maximum reading of a rudder in radians, rad: 46°. A rudder in degrees exceeds this number in any manoeuvre.
 const MAX_RUDDER_RAD: f64 = 0.8;
 
-/// Number that a rudder in degrees exceeds at least once: as radians it would be more than 90°.
+/// Minimum of the maximum reading of a rudder in degrees: in radians the same number would be more than 90°.
 const MIN_RUDDER_DEG: f64 = 1.6;
 
-/// Bounds of the ratio of heading range to rudder range in a zig-zag: a factor of 56 apart, less than the
-/// 57.3 between degrees and radians.
+/// Bounds of the ratio of heading range to rudder range in a zig-zag. Their ratio of 56 is below the 57.3 between
+/// degrees and radians.
 pub(super) const ZIG_ZAG_RANGE_RATIO: [f64; 2] = [0.25, 14.0];
 
-/// Bounds of the same ratio for a rudder laid to a single side: course changes and turning circles.
+/// Bounds of that ratio for a rudder laid to a single side: course changes and turning circles.
 const TURN: [f64; 2] = [1.0, 500.0];
 
-/// Maximum continuous heading in radians: six circles.
+/// Maximum unwrapped heading, rad: six circles.
 const MAX_HEADING_RAD: f64 = 38.0;
 
 /// Minimum rate of a rudder, rad/s: 0.2 °/s.
@@ -53,9 +53,11 @@ pub(super) struct UnitlessColumn {
     pub largest: f64,
 }
 
-/// Determines the units of `open` columns, and of the time column `open_time`; returns warnings of the decisions.
+/// Determines the units of the columns `open`, and of the time column `open_time`, whose names state no unit; returns
+/// the warnings of the decisions.
 ///
-/// Fails if heading, rudder, a yaw rate used for the heading, or time could have two units.
+/// Fails if the unit of the heading, the rudder or a yaw rate used for the heading is undetermined, or if the time
+/// cannot be in seconds.
 pub(super) fn infer_units(
     log: &mut Log,
     mut open: Vec<UnitlessColumn>,
@@ -93,7 +95,7 @@ pub(super) fn infer_units(
             }
             None if is_needed => {
                 let UnitlessColumn { channel, name: column, largest } = open.clone();
-                return Err(Problem::OpenUnit { line, column, quantity: channel.label(), largest, channel });
+                return Err(Problem::MissingUnit { line, column, quantity: channel.label(), largest, channel });
             }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
@@ -203,8 +205,8 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.si_factor()))).copied()
 }
 
-/// Determines the unit of a time without one: a count since 1970 or 1899, or seconds if ships can turn at such rates.
-/// Returns the text of the warning; fails if the unit cannot be seconds.
+/// Determines the unit of a time column without a unit: a count since 1970 or 1899, or seconds if ships can turn at
+/// such rates. Returns the text of the warning; fails if the unit cannot be seconds.
 fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let name = shortened(name);
     let times = &mut log.columns.time;
@@ -219,12 +221,12 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
     let last = times[times.len() - 1];
     if SERIAL_DAY[0] < first && last < SERIAL_DAY[1] && last - first < 31.0 {
         times.iter_mut().for_each(|time| *time = (*time - first) * 86_400.0);
-        log.clock = Some(Clock { zone: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
+        log.clock = Some(Clock { utc_offset_min: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
         return Ok(format!(
             "`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row"
         ));
     }
-    let refusal = || Problem::OpenTime { line, column: name.clone() };
+    let refusal = || Problem::MissingTimeUnit { line, column: name.clone() };
     let channels = &log.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
         let rate_deg_s = mean_rate(times, heading).to_degrees();
@@ -254,5 +256,9 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
 /// Clock at a number of seconds after day `zero`, counted from 1970-01-01.
 fn clock(seconds: f64, zero: i64) -> Clock {
     let day = (seconds / crate::clock::SECONDS_PER_DAY).floor();
-    Clock { day: Some(zero + day as i64), second: seconds - day * crate::clock::SECONDS_PER_DAY, zone: Some(0) }
+    Clock {
+        day: Some(zero + day as i64),
+        second: seconds - day * crate::clock::SECONDS_PER_DAY,
+        utc_offset_min: Some(0),
+    }
 }

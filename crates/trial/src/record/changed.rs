@@ -27,7 +27,7 @@ impl Trial {
     }
 
     /// The same record without the headings at given times, s.
-    pub fn without_readings(mut self, times: &[f64]) -> Self {
+    pub fn without_headings(mut self, times: &[f64]) -> Self {
         let rows: Vec<usize> = (0..self.len()).filter(|&row| times.contains(&self.time()[row])).collect();
         if let Some(heading) = self.channels.get_mut(&Channel::Heading) {
             rows.into_iter().for_each(|row| heading[row] = f64::NAN);
@@ -49,7 +49,7 @@ impl Trial {
         Self::from_rudder(Arc::clone(&self.rudder), name, origin, channels, Vec::new())
     }
 
-    /// The same record with other rudder angles, rad; `None` unless there is one finite angle for every row.
+    /// The same record with other rudder angles, rad; `None` unless there is a finite angle for every row.
     pub fn with_rudder(mut self, angles: Vec<f64>) -> Option<Self> {
         self.rudder = Arc::new(RecordedRudder::new(signal(self.time().to_vec(), angles).ok()?));
         Some(self)
@@ -57,7 +57,7 @@ impl Trial {
 
     /// Record of a similar ship of another length and approach speed: times are multiplied by
     /// (L₂/V₂)/(L₁/V₁), yaw rate and propeller rate divided by it, speeds multiplied by V₂/V₁ and lengths by L₂/L₁.
-    /// Angles and unknown columns are unchanged.
+    /// Angles, unknown columns and declared conditions are unchanged.
     ///
     /// Dimensionless quantities (K', T') are invariant. `None` if length and speed of this ship are not declared
     /// or a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
@@ -82,7 +82,7 @@ impl Trial {
                 ..*reading
             };
         }
-        scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
+        scaled.noise.yaw_rate_sd = self.noise.yaw_rate_sd.map(|sd| sd * factor(Channel::YawRate));
         scaled.particulars = Some(particulars);
         Some(scaled)
     }

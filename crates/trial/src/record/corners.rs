@@ -23,9 +23,9 @@ pub struct Corner {
     /// Time, s.
     pub time: f64,
     /// Rudder rate from the row to the corner, rad/s.
-    pub before: f64,
+    pub rate_before: f64,
     /// Rudder rate from the corner to the next row, rad/s.
-    pub after: f64,
+    pub rate_after: f64,
 }
 
 /// Recorded rudder: its rows and the corners between them.
@@ -63,7 +63,7 @@ fn through(rows: &Polyline, corners: &[Corner]) -> Option<Polyline> {
         angle.push(delta);
         if let Some(corner) = corners.next_if(|corner| corner.row == row) {
             time.push(corner.time);
-            angle.push(delta + corner.before * (corner.time - t));
+            angle.push(delta + corner.rate_before * (corner.time - t));
         }
     }
     Polyline::new(time, angle).ok()
@@ -121,7 +121,12 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
             }
             let elapsed = (step - after * duration) / (before - after);
             let inside = ROW_TOLERANCE * duration..=(1.0 - ROW_TOLERANCE) * duration;
-            inside.contains(&elapsed).then(|| Corner { row, time: time[row] + elapsed, before, after })
+            inside.contains(&elapsed).then(|| Corner {
+                row,
+                time: time[row] + elapsed,
+                rate_before: before,
+                rate_after: after,
+            })
         })
         .collect();
     // A rudder with many other bends does not move at a constant rate.

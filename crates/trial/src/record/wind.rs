@@ -30,8 +30,8 @@ impl Trial {
     }
 
     /// Mean true wind: root mean square speed, m/s, and mean direction from which it comes, clockwise from north, rad.
-    /// `None` unless both the relative wind and the speed of the ship are known.
-    pub fn mean_wind(&self) -> Option<[f64; 2]> {
+    /// `None` unless some row has a heading, a relative wind and a speed of the ship.
+    pub fn mean_true_wind(&self) -> Option<[f64; 2]> {
         let ([speed, from], ship) = (self.relative_wind()?, self.channel(Channel::Speed)?);
         let to_north_and_east = |row: usize| {
             let (side, ahead) = from[row].sin_cos();
@@ -74,9 +74,12 @@ mod tests {
         assert!((speed[14] - 7.0).abs() < 1e-12 && from[14].abs() < 1e-12, "ahead: {} {}", speed[14], from[14]);
         let from_relative = trial_in([(Channel::WindRelativeSpeed, speed), (Channel::WindRelativeFrom, from)]);
         for trial in [from_true, from_relative] {
-            let [speed, from] = trial.mean_wind().expect("known");
+            let [speed, from] = trial.mean_true_wind().expect("known");
             assert!((speed - 5.0).abs() < 1e-12 && (from - 0.7).abs() < 1e-12, "{speed} {from}");
         }
-        assert_eq!(trial_in([(Channel::Sway, channel(|_| 0.0)), (Channel::North, channel(|t| t))]).mean_wind(), None);
+        assert_eq!(
+            trial_in([(Channel::Sway, channel(|_| 0.0)), (Channel::North, channel(|t| t))]).mean_true_wind(),
+            None
+        );
     }
 }

@@ -52,12 +52,12 @@ impl ZigZag {
 fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
     let holds = holds::holds(trial.rudder())?;
-    let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder);
+    let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder_sd);
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
     let (opening, closing) = (movements[0].start.value, movements[movements.len() - 1].start.value);
     let rough_period = 2.0 * (closing - opening) / (movements.len() - 1) as f64;
     // A record has at least as many headings as a `Heading` requires.
-    let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading)
+    let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading_sd)
         .expect("a trial has at least 8 headings");
     let mut executes: Vec<Execute> =
         movements.iter().map(|movement| execute(movement, &heading)).collect::<Result<_, _>>()?;
@@ -184,7 +184,7 @@ fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
     first.foot == 0 && (first.before - amidships).abs() > MIN_BEGUN_SHARE * holds[0].level.abs()
 }
 
-/// `true` if the record has half a fit of headings before an execute: a one-sided fit misses the bend there.
+/// `true` if the headings begin at least half a fit before an execute: a one-sided fit misses the bend there.
 fn shows_execute(execute: &Execute, heading: &Heading) -> bool {
     execute.time.value - heading.half_width >= heading.time[0]
 }

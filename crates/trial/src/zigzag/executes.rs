@@ -21,7 +21,7 @@ pub struct Movement {
     pub after: f64,
     /// Last row at the level before.
     pub foot: usize,
-    /// Rate of the rudder, rad/s; `None` if the movement is too fast for the sampling.
+    /// Rate of the rudder, rad/s, signed; `None` with fewer than two rows on its ramp, or if their line runs backwards.
     pub rate: Option<f64>,
     /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; otherwise `None`.
     least_rate: Option<f64>,
@@ -59,7 +59,8 @@ pub struct RudderMovements<'a> {
 }
 
 impl<'a> RudderMovements<'a> {
-    /// Rudder with its holds; the noise is declared, or estimated from row to row within the holds.
+    /// Movements of a rudder (rad) over time (s) between its holds. The standard deviation of its noise is
+    /// `declared_noise` (rad), else estimated from row to row within the holds.
     pub fn new(time: &'a [f64], angle: &'a [f64], holds: &'a [Hold], declared_noise: Option<f64>) -> Self {
         let noise = declared_noise.unwrap_or_else(|| {
             let mut steps: Vec<f64> = holds
@@ -75,7 +76,7 @@ impl<'a> RudderMovements<'a> {
         let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
         let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
         // If most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
-        // tightest bound is near the rate. If few have one, ramps are much shorter and the rate remains unknown.
+        // tightest bound is near the rate. If few have, ramps are much shorter and the rate remains unknown.
         let bounds: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.least_rate).collect();
         let tightest = bounds.iter().copied().max_by(f64::total_cmp).filter(|_| 2 * bounds.len() >= reversals.len());
         rudder.rate = median(&mut rates).or(tightest);
@@ -218,8 +219,8 @@ pub(crate) fn row_before(time: &[f64], row: usize, by: f64) -> usize {
     time.partition_point(|&t| t <= time[row] - by).saturating_sub(1).min(row)
 }
 
-/// Step of a rounded channel, in its unit: the minimum distance between two of its values. Close to zero for a channel
-/// that is not rounded.
+/// Resolution of a rounded channel, in its unit: the minimum distance between two of its values. Close to zero for a
+/// channel that is not rounded, 0 for a constant channel.
 pub(crate) fn quantum(angle: &[f64]) -> f64 {
     let mut values = angle.to_vec();
     values.sort_unstable_by(f64::total_cmp);

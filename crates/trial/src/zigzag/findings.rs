@@ -73,7 +73,7 @@ impl fmt::Display for Side {
 pub struct NominalAngles {
     /// Rudder angle δ, rad.
     pub rudder: f64,
-    /// Change of heading at which the rudder is reversed ψ, rad.
+    /// Change of heading ψ at which the rudder is reversed, rad.
     pub heading: f64,
 }
 
@@ -104,7 +104,7 @@ pub enum BaseCourseSource {
 /// Base course of a zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseCourse {
-    /// Course, rad.
+    /// Course, rad, unwrapped.
     pub heading: Quantity,
     /// Source of the course.
     pub source: BaseCourseSource,
@@ -158,14 +158,14 @@ pub struct Overshoot {
 /// Source of the definitions: ITTC 7.5-04-02-01 (2017).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZigZag {
-    /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` if those headings differ by more
-    /// than half their size.
+    /// Nominal δ/ψ, from the held rudder and the headings at the executes; `None` if the changes of heading differ by
+    /// more than half their median, or if no conventional angle is near.
     pub nominal_angles: Option<NominalAngles>,
     /// Side of the first execute; `None` if the record begins within the trial.
     pub first_side: Option<Side>,
     /// Base course of the trial.
     pub base_course: BaseCourse,
-    /// Executes in the order of time; including the first one if recorded.
+    /// Executes in the order of time, including the first execute if it was recorded.
     pub executes: Vec<Execute>,
     /// Initial turning time t_a, s: from the first execute to a change of heading by the nominal ψ.
     pub initial_turning_time: Option<Quantity>,
@@ -173,7 +173,7 @@ pub struct ZigZag {
     pub initial_turning_distance: Option<f64>,
     /// `true` if the record begins too near to its first reversal for a measurement of the heading there.
     pub begins_at_reversal: bool,
-    /// Overshoots in the order of time, one for every reversal with recorded beginning and peak.
+    /// Overshoots in the order of time, for every reversal with recorded beginning and peak.
     pub overshoots: Vec<Overshoot>,
     /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute contains
     /// the initial transient and is used only if it is the only cycle.
@@ -231,8 +231,8 @@ impl ZigZag {
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
 
-    /// Overshoots in the order of their executes, from the first of the record on; `None` for a peak that was not
-    /// recorded.
+    /// Overshoots by reversal, from the first reversal of the record to that of the last recorded peak; `None` for a
+    /// reversal without a recorded peak.
     pub fn overshoots_by_execute(&self) -> impl Iterator<Item = Option<&Overshoot>> {
         let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
         (usize::from(self.first_side.is_some())..end)

@@ -95,27 +95,27 @@ impl<const N: usize> LocalPolynomial<N> {
         slopes.dot(&(self.inverse_gram * slopes)).max(0.0).sqrt() / self.half_width
     }
 
-    /// Value at time `t`, with its standard deviation if `noise`, of the white noise, is given.
+    /// Value at time `t`, with its standard deviation if `noise` gives that of the white noise.
     pub fn value_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.value(t), noise.map(|sd| sd * self.value_gain(t)))
     }
 
-    /// Slope at time `t`, per second, with its standard deviation if `noise`, of the white noise, is given.
+    /// Slope at time `t`, per second, with its standard deviation if `noise` gives that of the white noise.
     pub fn slope_at(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(self.slope(t), noise.map(|sd| sd * self.slope_gain(t)))
     }
 
-    /// Time `t` of a stationary point, with its standard deviation if `noise`, of the white noise, is given.
+    /// Time `t` of a stationary point, s, with its standard deviation if `noise` gives that of the white noise.
     pub fn time_of_peak(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.slope_gain(t) / self.curvature(t).abs()))
     }
 
-    /// Time `t` of a crossing, with its standard deviation if `noise`, of the white noise, is given.
+    /// Time `t` of a crossing, s, with its standard deviation if `noise` gives that of the white noise.
     pub fn time_of_crossing(&self, t: f64, noise: Option<f64>) -> Quantity {
         Quantity::new(t, noise.map(|sd| sd * self.value_gain(t) / self.slope(t).abs()))
     }
 
-    /// Time near the centre at which the polynomial has the value `level`; `None` if Newton's iteration leaves
+    /// Time near the centre, s, at which the polynomial has the value `level`; `None` if Newton's iteration leaves
     /// the window.
     pub fn crossing(&self, level: f64) -> Option<f64> {
         let mut t = self.centre;
@@ -134,8 +134,8 @@ impl<const N: usize> LocalPolynomial<N> {
         Some(t)
     }
 
-    /// Stationary point of a parabola or cubic at which the curvature has the sign of that at the centre; `None`
-    /// if it is outside the window or does not exist.
+    /// Time, s, of the stationary point of a parabola or cubic at which the curvature has the sign of that at the
+    /// centre; `None` if it is outside the window or does not exist.
     pub fn stationary_point(&self) -> Option<f64> {
         let [c1, c2, c3] = [1, 2, 3].map(|k| self.coefficients.get(k).copied().unwrap_or(0.0));
         // c₁ + 2 c₂ x + 3 c₃ x² = 0, in the form that is regular at c₃ = 0.

@@ -2,7 +2,7 @@
 //! identification of K and T. The rudder is not used.
 //!
 //! Source of the procedure: Nomoto (1960), Analysis of Kempf's standard maneuver test and proposed steering quality
-//! indices, DTMB Report 1461, derived anew here. The parabola at an extremum has a known small bias, because
+//! indices, DTMB Report 1461; the equations are derived anew. The parabola at an extremum has a small bias, because
 //! the turning rate of a ship does not change uniformly through a peak.
 
 use super::local::{Cubic, Parabola};
@@ -16,10 +16,10 @@ const MIN_EXTREMUM_SHARE: f64 = 0.35;
 /// vertex of each, at zero yaw rate.
 ///
 /// The record is split at its zero-crossings; in each part a parabola is fitted to the samples within ±`half_width` (s)
-/// of the maximum |heading| of a lightly smoothed (three-point mean) record: about 3 samples on a quiet record at 1 s,
-/// 4 to 6 on a noisy one. A part gives no extremum if the parabola bends the wrong way, its vertex lies outside the
-/// fit or the part, the record ends within the half width of it, or it is below 0.35 of the maximum |heading|. Empty
-/// for a record without a swing.
+/// of the maximum |heading| of a lightly smoothed (three-point mean) record. At a sampling period of 1 s a half-width
+/// of 3 samples suits a quiet record, of 4 to 6 samples a noisy record. A part gives no extremum if the parabola bends
+/// the wrong way, its vertex lies outside the fit or the part, the record begins or ends within the half-width of the
+/// maximum, or the extremum is below 0.35 of the maximum |heading|. Empty for a record without a swing.
 pub fn extrema(time: &[f64], heading: &[f64], half_width: f64) -> Vec<[f64; 2]> {
     let Some((&start, &end)) = time.first().zip(time.last()) else { return Vec::new() };
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
@@ -90,7 +90,7 @@ fn passages(time: &[f64], heading: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// Times, s, at which a heading (rad, measured from the base course) departs to the opposite side by 0.35 of its
-/// maximum absolute value: one for every swing, because noise about zero is smaller.
+/// maximum absolute value: a time for every swing, because noise about zero is smaller.
 pub fn departure_times(time: &[f64], heading: &[f64]) -> Vec<f64> {
     let largest = heading.iter().fold(0.0_f64, |most, psi| most.max(psi.abs()));
     let mut side = 0.0;

@@ -53,7 +53,7 @@ impl Identifier for KnownIndices {
         Ok(Estimate {
             response: FirstOrder::from_indices(k, t, 0.0),
             uncertainty: Uncertainty::Intervals { K: near(k), T: near(t), rudder_bias: [-0.1, 0.1], meaning: "near" },
-            robust: None,
+            robust_covariance: None,
             stop: StopReason::Direct,
             evaluations: 0,
             noise: None,

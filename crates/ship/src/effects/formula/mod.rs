@@ -1,8 +1,8 @@
 //! Effect written as a line of text: a formula over the signals of a trial, with constants that are fitted.
 //!
 //! The formula of a user is a yaw moment as equivalent rudder angle, rad: T r' + r = K (δ + δ_r + formula). The
-//! properties of its constants follow from evaluation. A formula of the list has a description, and is a yaw
-//! acceleration or the acting rudder.
+//! properties of its constants follow from evaluation. A formula of the list is a yaw acceleration or the acting
+//! rudder; the list declares the properties of its constants.
 
 mod columns;
 mod expectation;
@@ -25,7 +25,7 @@ pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
 pub use parse::FormulaError;
 use parse::MAX_FORMULA_CHARS;
-use points::{SignalScales, way_speed};
+use points::{SignalScales, lateral_distance_speed};
 use program::{FormulaProgram, FormulaSignal, RECORD_CONSTANTS, RecordConstants};
 
 /// Maximum number of characters in the name of an effect.
@@ -56,7 +56,7 @@ impl MirrorSymmetry {
     }
 }
 
-/// Formula of the list of effects.
+/// Row of the list of effects: an effect written as a formula.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
@@ -68,7 +68,7 @@ pub(super) struct ListedFormula {
     pub(super) formula: &'static str,
     /// Prior of every constant.
     pub(super) prior: ListedPrior,
-    /// `true` for a moment of the weather.
+    /// `true` for a moment of wind, sea or another external cause.
     pub(super) is_weather: bool,
 }
 
@@ -83,7 +83,7 @@ pub struct Formula {
     acts_on: EffectTarget,
     /// Measured channels that it requires.
     channels: Vec<Regressor>,
-    of_record: RecordConstants,
+    record_constants: RecordConstants,
     /// Row of the list; `None` for the formula of a user.
     listed: Option<ListedFormula>,
     /// Expectations of the constants of a user's formula; empty for a formula of the list.
@@ -96,7 +96,7 @@ pub struct Formula {
 /// Equality of name, text and record constants.
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
-        (self.description, self.of_record) == (other.description, other.of_record)
+        (self.description, self.record_constants) == (other.description, other.record_constants)
     }
 }
 
@@ -152,7 +152,7 @@ impl Formula {
             program,
             description,
             acts_on: EffectTarget::MOMENT,
-            of_record: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
+            record_constants: RECORD_CONSTANTS.map(|(_, neutral, _)| neutral),
             listed: None,
             expected: Vec::new(),
             is_size: Vec::new(),
@@ -205,7 +205,7 @@ impl Formula {
     #[must_use]
     pub fn with_length(&self, length: f64) -> Self {
         let mut formula = self.clone();
-        formula.of_record[2] = length;
+        formula.record_constants[2] = length;
         formula
     }
 
@@ -218,9 +218,9 @@ impl Formula {
         self.program.signals.contains(&signal)
     }
 
-    /// Speed that drives the lateral way, m/s.
-    fn way_speed(&self, measured: &MeasuredChannels) -> f64 {
-        let [.., speed, is_always] = self.of_record;
+    /// Speed in the rate of the lateral distance, m/s.
+    fn lateral_distance_speed(&self, measured: &MeasuredChannels) -> f64 {
+        let [.., speed, is_always] = self.record_constants;
         measured.speed.filter(|_| is_always == 0.0).unwrap_or(speed)
     }
 }
@@ -233,17 +233,17 @@ impl Effect for Formula {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let has = |channel| match channel {
             Regressor::Speed => records.speed.is_some(),
-            Regressor::Sway => records.sway.is_some(),
-            Regressor::Wind => records.wind_square.is_some(),
-            Regressor::Propeller => records.propeller.is_some(),
+            Regressor::Sway => records.approach_speed_for_sway.is_some(),
+            Regressor::Wind => records.mean_square_wind_speed.is_some(),
+            Regressor::Propeller => records.rms_propeller_rate.is_some(),
         };
         if !self.channels.iter().copied().all(has) {
             return None;
         }
         let SignalScales { speed, length, .. } = SignalScales::from_records(records);
         let is_always = f64::from(u8::from(records.speed.is_none()));
-        let of_record = [speed, records.span[0], length, way_speed(records), is_always];
-        let effect = Self { of_record, ..self.clone() };
+        let record_constants = [speed, records.span[0], length, lateral_distance_speed(records), is_always];
+        let effect = Self { record_constants, ..self.clone() };
         let priors = match effect.listed {
             None => effect.derived_priors(records)?,
             Some(row) => {
@@ -264,21 +264,21 @@ impl Effect for Formula {
     }
 
     fn uses(&self, channel: Regressor) -> bool {
-        self.is_inactive_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralWay)
+        self.is_inactive_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralDistance)
     }
 
-    /// Two states for the lateral way: the way, and the initial course ψ₀.
+    /// Two states for a formula with the lateral distance: the distance y, and the initial course ψ₀.
     fn states(&self) -> usize {
-        if self.has(FormulaSignal::LateralWay) { 2 } else { 0 }
+        if self.has(FormulaSignal::LateralDistance) { 2 } else { 0 }
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
-        self.taken().map(|place| (self.of_record[place], RECORD_CONSTANTS[place].2)).collect()
+        self.taken().map(|place| (self.record_constants[place], RECORD_CONSTANTS[place].2)).collect()
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
         let mut effect = self.clone();
-        self.taken().zip(constants).for_each(|(place, value)| effect.of_record[place] = *value);
+        self.taken().zip(constants).for_each(|(place, value)| effect.record_constants[place] = *value);
         Some(Arc::new(effect))
     }
 
@@ -290,8 +290,8 @@ impl Effect for Formula {
         self.listed.is_some_and(|row| row.is_weather)
     }
 
-    /// `true` with the signal `psi`; the lateral way is relative to the initial course, so it does not depend on the
-    /// absolute heading.
+    /// `true` with the signal `psi`; the lateral distance is relative to the initial course, so it does not depend on
+    /// the absolute heading.
     fn is_heading_dependent(&self) -> bool {
         self.has(FormulaSignal::Heading)
     }
@@ -299,14 +299,14 @@ impl Effect for Formula {
 
 impl<R: Real> EffectEquations<R> for Formula {
     fn approach(&self, _p: &[R], now: &OperatingPoint<R>, z: &mut [R]) {
-        if let [way, course] = z {
-            (*way, *course) = (R::from(0.0), now.heading);
+        if let [distance, course] = z {
+            (*distance, *course) = (R::from(0.0), now.heading);
         }
     }
 
     fn rates(&self, _p: &[R], z: &[R], now: &OperatingPoint<R>, _before: R, rate: &mut [R]) {
         let (sin, _) = (now.heading - z[1]).sin_cos();
-        (rate[0], rate[1]) = (sin * self.way_speed(now.measured), R::from(0.0));
+        (rate[0], rate[1]) = (sin * self.lateral_distance_speed(now.measured), R::from(0.0));
     }
 
     #[inline]
@@ -322,11 +322,11 @@ impl<R: Real> EffectEquations<R> for Formula {
         if !self.acts_on.adds_moment || !self.channels.iter().all(|channel| now.measured.has(*channel)) {
             return R::from(0.0);
         }
-        self.program.value(p, |signal| signal.at(now, z, &self.of_record))
+        self.program.value(p, |signal| signal.at(now, z, &self.record_constants))
     }
 }
 
 #[cfg(test)]
-mod lateral_way_tests;
+mod lateral_distance_tests;
 #[cfg(test)]
 mod tests;

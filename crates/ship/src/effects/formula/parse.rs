@@ -13,7 +13,7 @@ const MAX_DEPTH: usize = 24;
 /// Maximum number of fitted constants.
 const MAX_CONSTANTS: usize = 4;
 
-/// Syntax error of a formula, with its position.
+/// Error of a formula, with its position in the text.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}\n{}", marked(text, *position))]
 pub struct FormulaError {
@@ -21,7 +21,7 @@ pub struct FormulaError {
     pub text: String,
     /// Position: number of characters before it.
     pub position: usize,
-    /// Problem at the position: given symbol and expected symbols.
+    /// Problem at the position, with the expected input.
     pub problem: String,
 }
 
@@ -109,7 +109,7 @@ impl FormulaParser {
             self.program.instructions.push(Instruction::With(operator, operand));
             return Ok(());
         }
-        self.program.waiting = self.program.waiting.max(self.waiting.saturating_sub(1));
+        self.program.max_stack = self.program.max_stack.max(self.waiting.saturating_sub(1));
         match step {
             Instruction::Take(_) => self.waiting += 1,
             Instruction::Operate(_) => self.waiting -= 1,
@@ -123,7 +123,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// Part one nesting level deeper. Fails if the nesting is too deep.
+    /// Parses `part` one nesting level deeper. Fails if the nesting is too deep.
     fn deeper(&mut self, part: fn(&mut Self) -> Result<(), FormulaError>) -> Result<(), FormulaError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -134,7 +134,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// Chain of parts joined by operators of equal precedence, evaluated from left to right.
+    /// Parses a chain of parts joined by operators of equal precedence, evaluated from left to right.
     fn chain(
         &mut self,
         operators: &[(char, FormulaOperator)],
@@ -183,7 +183,7 @@ impl FormulaParser {
         Ok(())
     }
 
-    /// Power whose exponent starts at instruction `from`; an integer exponent allows negative bases.
+    /// Adds a power whose exponent starts at instruction `from`; an integer exponent up to ±20 allows negative bases.
     fn raise(&mut self, from: usize) -> Result<(), FormulaError> {
         let exponent = match self.program.instructions[from..] {
             [Instruction::Take(Operand::Number(number))] => Some(number),

@@ -14,7 +14,7 @@ pub(super) struct SignalScales {
     wind: f64,
     K_over_T: f64,
     pub(super) length: f64,
-    lateral_way: f64,
+    lateral_distance: f64,
 }
 
 impl SignalScales {
@@ -28,29 +28,29 @@ impl SignalScales {
             wind: 1.0,
             K_over_T: 1.0,
             length: 1.0,
-            lateral_way: 1.0,
+            lateral_distance: 1.0,
         }
     }
 
     /// Scales in records: r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
     pub(super) fn from_records(records: &RecordScales) -> Self {
-        let speed = records.speed.or(records.sway).unwrap_or(1.0);
+        let speed = records.speed.or(records.approach_speed_for_sway).unwrap_or(1.0);
         Self {
-            yaw_rate: 0.3 / records.time,
-            rudder: records.rudder,
+            yaw_rate: 0.3 / records.ship_length_time,
+            rudder: records.max_rudder,
             speed,
-            propeller: records.propeller.unwrap_or(1.0),
+            propeller: records.rms_propeller_rate.unwrap_or(1.0),
             duration: records.duration,
-            wind: records.wind_square.unwrap_or(1.0).sqrt(),
-            K_over_T: records.time.powi(-2),
-            length: records.time * speed,
-            lateral_way: 3.0 * records.rudder * records.time * way_speed(records),
+            wind: records.mean_square_wind_speed.unwrap_or(1.0).sqrt(),
+            K_over_T: records.ship_length_time.powi(-2),
+            length: records.ship_length_time * speed,
+            lateral_distance: 3.0 * records.max_rudder * records.ship_length_time * lateral_distance_speed(records),
         }
     }
 }
 
-/// Speed that drives a lateral way in given records, m/s; 1 if a record has no speed.
-pub(super) fn way_speed(records: &RecordScales) -> f64 {
+/// Speed in the rate of the lateral distance, m/s; 1 if a record has no measured speed.
+pub(super) fn lateral_distance_speed(records: &RecordScales) -> f64 {
     records.speed.unwrap_or(1.0)
 }
 
@@ -59,12 +59,13 @@ pub(super) fn way_speed(records: &RecordScales) -> f64 {
 pub(super) struct SignalPoint {
     pub(super) scales: SignalScales,
     /// Values from −1 to 1, relative to their scales, of yaw rate, rudder, heading, sway, direction of the wind,
-    /// lateral way.
+    /// lateral distance.
     pub(super) signed: [f64; 6],
     /// Values from 0.5 to 1, relative to their scales, of speed, propeller, time, speed of the wind.
     pub(super) positive: [f64; 4],
-    /// Number of time units in a second, and of length units in a metre.
+    /// Number of time units in a second.
     pub(super) second: f64,
+    /// Number of length units in a metre.
     pub(super) metre: f64,
 }
 
@@ -104,7 +105,7 @@ impl SignalPoint {
             FormulaSignal::Rudder => delta * scales.rudder,
             // In a zig-zag the heading reaches about the rudder angle.
             FormulaSignal::Heading => psi * scales.rudder,
-            FormulaSignal::LateralWay => y * scales.lateral_way * metre,
+            FormulaSignal::LateralDistance => y * scales.lateral_distance * metre,
             FormulaSignal::Sway => 0.15 * v * scales.speed * per_second,
             FormulaSignal::Surge | FormulaSignal::Speed => speed * scales.speed * per_second,
             FormulaSignal::Propeller => n * scales.propeller / second,

@@ -22,9 +22,9 @@ pub enum FormulaSignal {
     Rudder,
     /// `psi`, heading, rad.
     Heading,
-    /// `y`, lateral way to starboard of the initial course, m: y' = U sin(ψ − ψ₀). U is the measured speed, or 1 m/s if
-    /// records have none, so that y is in metres per m/s.
-    LateralWay,
+    /// `y`, lateral distance to starboard of the initial course, m: y' = U sin(ψ − ψ₀). U is the measured speed, or
+    /// 1 m/s if records have none, so that y is in metres per m/s.
+    LateralDistance,
     /// `v`, sway velocity to starboard, m/s.
     Sway,
     /// `u`, surge velocity, m/s: √(U² − v²).
@@ -56,12 +56,12 @@ pub(super) const RECORD_CONSTANTS: [(FormulaSignal, f64, Dimension); 5] = [
     (FormulaSignal::SpeedRatio, 1.0, [-1, 1]),
     (FormulaSignal::Start, 0.0, [1, 0]),
     (FormulaSignal::PrimeYawRate, 1.0, [0, 1]),
-    (FormulaSignal::LateralWay, 1.0, [-1, 1]),
-    (FormulaSignal::LateralWay, 0.0, [0, 0]),
+    (FormulaSignal::LateralDistance, 1.0, [-1, 1]),
+    (FormulaSignal::LateralDistance, 0.0, [0, 0]),
 ];
 
-/// Values of the record constants: approach speed, m/s; first time, s; ship length, m; the speed of the lateral way if
-/// no speed is measured, m/s; and 1 if this speed always applies, else 0.
+/// Values of the record constants: approach speed, m/s; first time, s; ship length, m; speed in the rate of the lateral
+/// distance if no speed is measured, m/s; and 1 if this speed always applies, else 0.
 pub(super) type RecordConstants = [f64; RECORD_CONSTANTS.len()];
 
 impl FormulaSignal {
@@ -70,7 +70,7 @@ impl FormulaSignal {
         ("r", Self::YawRate),
         ("delta", Self::Rudder),
         ("psi", Self::Heading),
-        ("y", Self::LateralWay),
+        ("y", Self::LateralDistance),
         ("v", Self::Sway),
         ("u", Self::Surge),
         ("U", Self::Speed),
@@ -112,7 +112,7 @@ impl FormulaSignal {
             Self::YawRate => now.yaw_rate,
             Self::Rudder => now.rudder,
             Self::Heading => now.heading,
-            Self::LateralWay => z[0],
+            Self::LateralDistance => z[0],
             Self::Sway => constant(sway),
             Self::Surge => R::from((value(speed).powi(2) - value(sway).powi(2)).max(0.0).sqrt()),
             Self::Speed => constant(speed),
@@ -280,7 +280,7 @@ pub struct FormulaProgram {
     /// Signals in the order of their first use.
     pub(super) signals: Vec<FormulaSignal>,
     /// Maximum number of values on the stack.
-    pub(super) waiting: usize,
+    pub(super) max_stack: usize,
 }
 
 impl FormulaProgram {
@@ -293,7 +293,7 @@ impl FormulaProgram {
     /// Value at these constants; `signal` returns the value of a signal.
     #[inline]
     pub(super) fn value<R: Real>(&self, constants: &[R], signal: impl Fn(FormulaSignal) -> R) -> R {
-        match (self.signals.len(), self.waiting) {
+        match (self.signals.len(), self.max_stack) {
             (0..=2, 0..=1) => self.run::<R, 2, 1>(constants, signal),
             (0..=SMALL_STACK, 0..=SMALL_STACK) => self.run::<R, SMALL_STACK, SMALL_STACK>(constants, signal),
             _ => self.run::<R, STACK_SIZE, STACK_SIZE>(constants, signal),

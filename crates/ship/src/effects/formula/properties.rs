@@ -184,7 +184,7 @@ impl Formula {
             }
             let alone = self.with_size(Some(place), &shapes);
             let square = SignalPoint::all(&scales).map(|point| self.moment(&alone, &point).powi(2)).sum::<f64>();
-            let usual = MOMENT_SHARE * records.rudder / (square / SignalPoint::COUNT as f64).sqrt();
+            let usual = MOMENT_SHARE * records.max_rudder / (square / SignalPoint::COUNT as f64).sqrt();
             Prior::normal(parameter, 0.0, self.expected[place].about.map_or(usual, f64::abs))
         };
         let priors: Vec<Prior> = self.description.parameters.iter().enumerate().map(prior).collect();

@@ -6,14 +6,14 @@ use crate::effects::list::{LIST, ListedEffect};
 
 pub(super) fn manoeuvres() -> RecordScales {
     RecordScales {
-        time: 20.0,
-        rudder: 0.35,
+        ship_length_time: 20.0,
+        max_rudder: 0.35,
         duration: 600.0,
-        spacing: 1.0,
+        row_interval: 1.0,
         speed: Some(7.0),
-        sway: Some(7.0),
-        wind_square: None,
-        propeller: None,
+        approach_speed_for_sway: Some(7.0),
+        mean_square_wind_speed: None,
+        rms_propeller_rate: None,
         span: [0.0, 600.0],
     }
 }

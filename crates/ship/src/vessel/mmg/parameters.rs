@@ -15,6 +15,7 @@ pub struct BySign<R = f64> {
 
 impl<R: Real> BySign<R> {
     /// Value at an angle.
+    #[inline(always)]
     pub fn value_at(&self, angle: R) -> R {
         if angle.value() < 0.0 { self.negative } else { self.positive }
     }
@@ -121,7 +122,7 @@ pub struct Rudder<R = f64> {
 /// The density of the water drops out: mass is given by the displaced volume, and every force is proportional to the
 /// density.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameters<R = f64> {
+pub struct MmgParameters<R = f64> {
     /// Length between perpendiculars, m.
     pub Lpp: R,
     /// Draught d, m.
@@ -172,7 +173,7 @@ constants!(BySign: positive negative);
 named_constants!(HullDerivatives: mx my Jz R0 Xvv Xvr Xrr Xvvvv Yv Yr Yvvv Yvvr Yvrr Yrrr Nv Nr Nvvv Nvvr Nvrr Nrrr);
 constants!(Propeller: DP wP0 tP xP, wake = |wake: &Wake| wake.to_real(), k = |k: &[f64; 3]| k.map(R::from));
 constants!(Rudder: AR eta f_alpha epsilon kappa tR aH xH xR lR, gammaR = BySign::to_real);
-constants!(Parameters: Lpp d volume xG kzz,
+constants!(MmgParameters: Lpp d volume xG kzz,
     hull = HullDerivatives::to_real, propeller = Propeller::to_real, rudder = Rudder::to_real);
 
 impl Wake {
@@ -184,7 +185,7 @@ impl Wake {
     }
 }
 
-impl Parameters {
+impl MmgParameters {
     /// Hull scaled to length 1.
     #[must_use]
     pub fn at_unit_length(&self) -> Self {
@@ -201,7 +202,7 @@ impl Parameters {
     }
 }
 
-impl<R> Parameters<R> {
+impl<R> MmgParameters<R> {
     /// Coefficient with this name in files; `None` for an unknown name or a coefficient of another wake law.
     pub fn coefficient_mut(&mut self, name: &str) -> Option<&mut R> {
         let Self { hull, propeller, rudder, kzz, .. } = self;

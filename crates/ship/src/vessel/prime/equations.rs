@@ -18,15 +18,15 @@ const MIN_INFLOW: f64 = 0.05;
 pub(super) struct PolynomialTerm {
     pub key: &'static str,
     pub symbol: &'static str,
-    pub ends: [f64; 2],
+    pub bounds: [f64; 2],
 }
 
 const fn free(key: &'static str, symbol: &'static str) -> PolynomialTerm {
-    PolynomialTerm { key, symbol, ends: [f64::NEG_INFINITY, f64::INFINITY] }
+    PolynomialTerm { key, symbol, bounds: [f64::NEG_INFINITY, f64::INFINITY] }
 }
 
-pub(super) const fn bounded(key: &'static str, symbol: &'static str, ends: [f64; 2]) -> PolynomialTerm {
-    PolynomialTerm { key, symbol, ends }
+pub(super) const fn bounded(key: &'static str, symbol: &'static str, bounds: [f64; 2]) -> PolynomialTerm {
+    PolynomialTerm { key, symbol, bounds }
 }
 
 /// Rudder bias δ_r, a coefficient of every form.
@@ -93,7 +93,7 @@ impl<R: Real> PrimeHull<R> {
     /// Accelerations (u', v', r') at surge, sway and yaw rate, in units of L and U₀; rudder in rad, propeller rate over
     /// that of the approach (`n_ratio`), yaw disturbance as equivalent rudder angle at approach speed (rad), and wind
     /// per unit of Y_w ([`wind_accelerations`](super::wind_accelerations)).
-    #[inline]
+    #[inline(always)]
     pub fn accelerations(&self, state: [R; 3], rudder: R, n_ratio: f64, disturbance: f64, wind: [f64; 3]) -> [R; 3] {
         let calm = self.in_calm.accelerations(state, rudder, n_ratio, disturbance);
         std::array::from_fn(|axis| calm[axis] + self.windage * wind[axis])
@@ -102,7 +102,7 @@ impl<R: Real> PrimeHull<R> {
 
 impl<R: Real> CalmHull<R> {
     /// Accelerations as in [`PrimeHull::accelerations`], without wind.
-    #[inline]
+    #[inline(always)]
     pub fn accelerations(&self, [u, v, r]: [R; 3], rudder: R, n_ratio: f64, disturbance: f64) -> [R; 3] {
         let [u, v, r] = [limited(u, MIN_SURGE), limited(v, -MAX_PRIME_SPEED), limited(r, -MAX_PRIME_SPEED)];
         match self {
@@ -126,13 +126,13 @@ impl<R: Real> CalmHull<R> {
 }
 
 /// Speed or yaw rate limited to the range of the equations.
-#[inline]
+#[inline(always)]
 fn limited<R: Real>(value: R, least: f64) -> R {
     value.clamped(R::from(least), R::from(MAX_PRIME_SPEED))
 }
 
 /// Terms of both polynomials, with coefficients in the order of [`COMMON_TERMS`].
-#[inline]
+#[inline(always)]
 fn common<R: Real>(p: &[R], [u, v, r]: [R; 3], rudder: R, n: f64, disturbance: f64) -> [R; 3] {
     let w = (p[6] * (u - n) + n).at_least(MIN_INFLOW);
     let angle = p[8] + rudder - p[7] * r.abs() / w;

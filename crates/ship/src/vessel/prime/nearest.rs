@@ -16,7 +16,7 @@ use estimation::number::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 
 use super::equations::{COMMON_TERMS, CUBIC_TERMS, CalmHull, PolynomialTerm, QUADRATIC_TERMS};
-use crate::vessel::mmg::{Mmg, Parameters};
+use crate::vessel::mmg::{Mmg, MmgParameters};
 use crate::vessel::prior::HullPrior;
 
 /// Factor f on the standard deviations of the formulas.
@@ -51,12 +51,12 @@ fn begin(term: &PolynomialTerm) -> f64 {
     }
 }
 
-/// Mean of the coefficients and their covariance.
+/// Normal prior of the coefficients of a polynomial: mean and covariance.
 type PolynomialLaw = (DVector<f64>, DMatrix<f64>);
 
 /// Priors of the quadratic and the cubic polynomial; `None` if the prior of the hull is not valid.
 pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]> {
-    let of_mmg = |parameters: &Parameters| {
+    let of_mmg = |parameters: &MmgParameters| {
         let hull = Mmg::at_speed(parameters.at_unit_length(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&CalmHull::Mmg(Box::new(hull), 0.0))))
     };
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::dynamics::Input;
     use crate::ships::{self, ShipModel};
-    use crate::vessel::prime::HullForm;
+    use crate::vessel::prime::HullModel;
     use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
     use estimation::statistics::median;
 
@@ -142,11 +142,11 @@ mod tests {
     /// some formulas, is nearer.
     #[test]
     fn published_hulls_depart_from_the_formulas_by_so_much() {
-        let forms = HullForm::candidates(None);
+        let forms = HullModel::candidates(None);
         let distances = |ship: &ships::Ship| {
             let truth = published(ship)?;
             let nearest = laws(&truth, &DMatrix::zeros(truth.len(), 0)).expect("independent terms");
-            let square = |form: &HullForm, (values, _): PolynomialLaw| {
+            let square = |form: &HullModel, (values, _): PolynomialLaw| {
                 // Without Y_w, the last coefficient.
                 let count = values.len();
                 let left = values - DVector::from_fn(count, |place, _| form.coefficients()[place].mean);

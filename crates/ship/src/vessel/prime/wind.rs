@@ -18,7 +18,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::equations::{PolynomialTerm, bounded};
-use crate::vessel::mmg::Parameters;
+use crate::vessel::mmg::MmgParameters;
 
 /// Wind coefficient Y_w, a coefficient of every form.
 pub(super) const WIND_COEFFICIENT: PolynomialTerm = bounded("Yw", "Y_w", [0.0, 0.1]);
@@ -39,7 +39,7 @@ const AHEAD: f64 = 0.4;
 const YAW: f64 = 18.0 * 0.18;
 
 /// Prior mean and standard deviation of Y_w for a hull.
-pub(super) fn wind_coefficient_prior(hull: &Parameters) -> [f64; 2] {
+pub(super) fn wind_coefficient_prior(hull: &MmgParameters) -> [f64; 2] {
     let mass = 2.0 * hull.volume / (hull.Lpp * hull.Lpp * hull.d);
     LATERAL_AREA.map(|area| DENSITY * SIDE_FORCE * area / (mass + hull.hull.my))
 }

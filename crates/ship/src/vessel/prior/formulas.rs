@@ -119,7 +119,7 @@ const RESISTANCE: f64 = 0.018;
 const SERVICE_THRUST: f64 = 0.18;
 /// Typical slope of K_T over J at this point, between −0.36 and −0.4.
 const THRUST_SLOPE: f64 = -0.38;
-/// Typical thrust deduction, equal for both ships and Esso Osaka.
+/// Typical thrust deduction, that of KVLCC2 and Esso Osaka; the SEIUN-like ship has 0.21.
 const DEDUCTION: f64 = 0.22;
 
 const LEE: &str = "Lee (1998)";

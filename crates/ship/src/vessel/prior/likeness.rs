@@ -27,7 +27,7 @@ fn is_of_hull(key: &str) -> bool {
 }
 
 impl HullParticulars {
-    /// `true` if both lengths are equal except for rounding.
+    /// `true` if both lengths are equal to within 2 %, for rounding in the sources.
     pub fn has_equal_length(&self, other: &Self) -> bool {
         (self.length / other.length - 1.0).abs() <= ROUNDING_TOLERANCE
     }

@@ -218,7 +218,7 @@ pub(super) struct HullDimensions {
 
 /// Error of a particular outside the range of ships.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{quantity} is {}{}, expected {} to {}{}; {cure}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
+#[error("{quantity} is {}{}, expected {} to {}{}; {advice}", ShortNumber::rounded(*.value, 4), in_unit(.unit),
     ShortNumber::rounded(.range[0], 4), ShortNumber::rounded(.range[1], 4), in_unit(.unit))]
 pub struct ParticularsError {
     /// Key of the particular, or the last key of a contradiction.
@@ -232,7 +232,7 @@ pub struct ParticularsError {
     /// Unit of value and range.
     pub unit: &'static str,
     /// Advice for the user.
-    pub cure: &'static str,
+    pub advice: &'static str,
 }
 
 fn in_unit(unit: &str) -> String {
@@ -275,8 +275,8 @@ impl HullParticulars {
         *self != Self { length: self.length, speed: self.speed, ..Self::default() }
     }
 
-    /// Check of every particular, and then of their ratios, against the ranges of ships. Fails with the first value
-    /// outside.
+    /// Check of every particular, and then of Froude number, ratios, displaced volume and advance ratio, against the
+    /// ranges of ships. Fails with the first value outside.
     pub fn check(&self) -> Result<(), ParticularsError> {
         for Particular { key, unit, range, get, .. } in PARTICULARS {
             let needed = matches!(key, "length-m" | "speed-m-s").then_some(0.0);
@@ -285,30 +285,30 @@ impl HullParticulars {
             }
         }
         let form = &self.complete_dimensions(&RATIOS.map(|ratio| ratio.mean));
-        let cure = "give length and speed at one scale: both of the ship, or both of the model";
+        let advice = "give length and speed at one scale: both of the ship, or both of the model";
         within(
             "speed-m-s",
             "the Froude number of length-m and speed-m-s".into(),
             self.froude_number(),
             USUAL_FROUDE_NUMBER,
             "1",
-            cure,
+            advice,
         )?;
         for Ratio { name, fills, range, ratio, .. } in RATIOS {
-            let cure = "give all lengths of one ship at one scale, in metres; a missing particular is estimated from the length \
+            let advice = "give all lengths of one ship at one scale, in metres; a missing particular is estimated from the length \
                         (`study list priors`)";
-            within(fills, format!("{name} ({fills})"), ratio(form), range, "1", cure)?;
+            within(fills, format!("{name} ({fills})"), ratio(form), range, "1", advice)?;
         }
         if let Some(volume) = self.volume() {
             let share = volume / (form.Cb * form.L * form.B * form.d);
             let range = [1.0 - DISPLACEMENT_TOLERANCE, 1.0 + DISPLACEMENT_TOLERANCE];
-            let cure = "correct one of displacement-t, block-coefficient, length-m, beam-m and draught-m";
+            let advice = "correct one of displacement-t, block-coefficient, length-m, beam-m and draught-m";
             let quantity = "the displaced volume of displacement-t over C_b L B d";
-            within("displacement-t", quantity.into(), share, range, "1", cure)?;
+            within("displacement-t", quantity.into(), share, range, "1", advice)?;
         }
-        let cure = "give revolutions per second, and the diameter and the speed of the same scale";
+        let advice = "give revolutions per second, and the diameter and the speed of the same scale";
         let quantity = "the advance ratio of propeller-rps, propeller-diameter-m and speed-m-s";
-        within("propeller-rps", quantity.into(), form.advance_ratio(), ADVANCE_RANGE, "1", cure)
+        within("propeller-rps", quantity.into(), form.advance_ratio(), ADVANCE_RANGE, "1", advice)
     }
 }
 
@@ -318,12 +318,12 @@ fn within(
     value: f64,
     range: [f64; 2],
     unit: &'static str,
-    cure: &'static str,
+    advice: &'static str,
 ) -> Result<(), ParticularsError> {
     let [lowest, highest] = range;
     // NaN is outside every range.
     if (lowest..=highest).contains(&value) {
         return Ok(());
     }
-    Err(ParticularsError { key, quantity, value, range, unit, cure })
+    Err(ParticularsError { key, quantity, value, range, unit, advice })
 }

@@ -69,7 +69,7 @@ fn errors_are(prior: &HullPrior, expected: &[(&str, f64, f64)]) {
 }
 
 /// Value of a coefficient in some parameters; NaN if they do not contain it.
-fn value_in(coefficient: &CoefficientPrior, mut parameters: Parameters) -> f64 {
+fn value_in(coefficient: &CoefficientPrior, mut parameters: MmgParameters) -> f64 {
     parameters.coefficient_mut(coefficient.formula.key).map_or(f64::NAN, |value| *value)
 }
 
@@ -105,8 +105,7 @@ fn formulas_miss_the_published_derivatives_of_esso_osaka_by_so_much() {
     assert!((100.0 * (derivative / 0.116 - 1.0) + 1.4).abs() < 0.1, "{derivative}");
 }
 
-/// Seven derivatives of the set and two added masses are these regressions to the printed digits, of which four are
-/// used here.
+/// Nine coefficients of the set equal the formulas used here, and N_vrr' another regression, to the printed digits.
 #[test]
 fn the_seiun_like_ship_is_made_of_regressions() {
     let prior = hull_prior(&SEIUN_LIKE).expect("a ship");

@@ -8,14 +8,14 @@ use ship::effects::SpeedLoss;
 use ship::replay::RecordedSignals;
 use ship::{Dynamics, Polyline, ResponseModel};
 
-use crate::motion::{COEFFICIENT_COUNT, Planar, PlanarCoefficients, PlanarShip};
+use crate::motion::{COEFFICIENT_COUNT, PlanarCoefficients, PlanarModel, PlanarShip};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
 const TRUTH: [f64; COEFFICIENT_COUNT] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
 
-fn planar() -> Planar {
-    Planar::new(PlanarCoefficients::clamped_from_array(TRUTH), LENGTH, SPEED).expect("a ship")
+fn planar() -> PlanarModel {
+    PlanarModel::new(PlanarCoefficients::clamped_from_array(TRUTH), LENGTH, SPEED).expect("a ship")
 }
 
 /// Rudder signal: successive angles from 3 s on, each held for `hold` s, with 15°/s between them.
@@ -122,7 +122,7 @@ fn states_steps_and_memory_of_the_response_are_passed_on() {
 fn numbers_that_are_no_ship_are_refused() {
     let coefficients = PlanarCoefficients::clamped_from_array(TRUTH);
     for (length, speed) in [(0.0, SPEED), (LENGTH, 0.0), (f64::NAN, SPEED), (LENGTH, f64::INFINITY)] {
-        assert!(Planar::new(coefficients, length, speed).is_err(), "{length} {speed}");
+        assert!(PlanarModel::new(coefficients, length, speed).is_err(), "{length} {speed}");
     }
     assert_eq!(PlanarCoefficients::clamped_from_array([-1.0; COEFFICIENT_COUNT]).X_dv, 0.0);
 }

@@ -129,7 +129,11 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
     Ok((numeric, left_out))
 }
 
-/// Reader of a MATLAB file as tab-separated text: variables of the length with most known names, else most numbers.
+/// Reader of a MATLAB file as tab-separated text: the variables of the length that has the most recognised names, at
+/// equality the most numbers.
+///
+/// Fails for a damaged file, for a file without numeric variables of at least two rows, and for a cell array with the
+/// name of a quantity in no other variable.
 pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::column_meaning(name)? {

@@ -34,10 +34,10 @@ const MAX_COMPRESSION: u64 = 1100;
 const MAX_DICTIONARY_VALUES: u64 = 1 << 22;
 
 /// `true` for a page whose stated sizes are within the limits.
-fn fits(PageHead { is_dictionary, unpacked, packed, values }: PageHead) -> bool {
-    unpacked <= SMALL_PAGE_BYTES.max(packed.saturating_mul(MAX_COMPRESSION))
-        && unpacked <= MAX_PAGE_BYTES
-        && (!is_dictionary || values <= MAX_DICTIONARY_VALUES.min(unpacked))
+fn fits(PageHead { is_dictionary, unpacked_bytes, packed_bytes, values }: PageHead) -> bool {
+    unpacked_bytes <= SMALL_PAGE_BYTES.max(packed_bytes.saturating_mul(MAX_COMPRESSION))
+        && unpacked_bytes <= MAX_PAGE_BYTES
+        && (!is_dictionary || values <= MAX_DICTIONARY_VALUES.min(unpacked_bytes))
 }
 
 /// Meaning of the values of a column.
@@ -46,7 +46,7 @@ enum Meaning {
     /// Number or text as stored, without a conversion.
     Plain,
     Unsigned,
-    /// Integers in units of this decimal place.
+    /// Integers with this number of decimal places.
     Decimal(u32),
     Half,
     Day,

@@ -1,4 +1,4 @@
-//! Values written as cells of a text, and a reader of the text as it is written.
+//! Writers of values as cells of a text, and a reader of the text while it is written.
 
 use std::fmt::Write as _;
 use std::io::{self, Read};
@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use crate::clock;
 use crate::reader::error::Problem;
 
-/// Reader of chunks of lines as they are written.
+/// Reader of a text that is generated in chunks of lines while it is read.
 pub struct ChunkReader<I> {
     chunks: I,
     text: String,

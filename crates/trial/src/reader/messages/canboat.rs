@@ -69,7 +69,7 @@ fn number(fields: &Value, name: &str) -> Option<f64> {
     fields[name].as_f64().or_else(|| fields[name]["value"].as_f64())
 }
 
-/// Readings in the fields of a message.
+/// Readings in the fields of a message, with angles in degrees or radians as in the log.
 fn readings_of_fields(pgn: u64, fields: &Value) -> Vec<RankedReading> {
     let number = |name: &str| number(fields, name);
     let is_true =
@@ -85,7 +85,8 @@ fn readings_of_fields(pgn: u64, fields: &Value) -> Vec<RankedReading> {
     readings.into_iter().filter_map(|(channel, class, value)| Some((channel, class, value?))).collect()
 }
 
-/// Stamp, parameter group, source and bytes of a plain line: `2026-05-04T09:00:00.000Z,2,127250,3,255,8,ff,…`.
+/// Stamp, parameter group, source and bytes of a plain line: `2026-05-04T09:00:00.000Z,2,127250,3,255,8,ff,…`; `None`
+/// for any other line.
 fn plain(line: &str) -> Option<(&str, u64, u64, Vec<u8>)> {
     let cells: Vec<&str> = line.split(',').map(str::trim).collect();
     let [stamp, _, pgn, source, _, length, bytes @ ..] = &cells[..] else { return None };

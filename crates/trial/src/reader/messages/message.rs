@@ -2,10 +2,11 @@
 
 use crate::channel::Channel;
 
-/// Reading: channel, class (lowest for the best quantity of the channel) and value.
+/// Reading: channel, class (lowest for the best quantity of the channel), and value in SI units, with an angle in
+/// degrees or radians as in the log.
 pub(super) type RankedReading = (Channel, u8, f64);
 
-/// Line of a log.
+/// Message: a line of a log with its stamp.
 pub(super) struct Message<'a> {
     /// Time stamp, as in the log.
     pub stamp: &'a str,

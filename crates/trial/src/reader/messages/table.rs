@@ -24,7 +24,7 @@ const PATHS: [(&str, Channel, u8); 6] = [
     ("navigation.speedoverground", Channel::Speed, 1),
 ];
 
-/// Columns of a long table.
+/// Separator of a long table, and the indices of its columns.
 #[derive(Debug, Clone)]
 pub(super) struct LongTable {
     separator: Separator,
@@ -66,7 +66,7 @@ fn reading(path: &str, value: f64) -> Option<RankedReading> {
         PATHS.iter().find(|(suffix, ..)| small.ends_with(suffix)).map(|(_, channel, class)| (*channel, *class, value));
     signal_k.or_else(|| match column_meaning(path)? {
         ColumnMeaning::Channel(channel, Some(unit)) => Some((channel, 0, value * unit.si_factor())),
-        ColumnMeaning::OverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.si_factor())),
+        ColumnMeaning::SpeedOverGround(Some(unit)) => Some((Channel::Speed, 1, value * unit.si_factor())),
         _ => None,
     })
 }

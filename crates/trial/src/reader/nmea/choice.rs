@@ -41,7 +41,7 @@ impl<'a> Offer<'a> {
         Self { column, readings: self.instrument.readings(column), ..self }
     }
 
-    /// `true` for a candidate with less than 1 % of the readings of the best; it is the last choice in any class.
+    /// `true` for a candidate with less than 1 % of `most` readings; it is the last choice in any class.
     fn is_sparse(&self, most: usize) -> bool {
         const SPARSE: usize = 100;
         self.readings.saturating_mul(SPARSE) < most
@@ -51,23 +51,25 @@ impl<'a> Offer<'a> {
 /// Maximum difference of two rudders whose mean is used (rms), degrees.
 const MAX_RUDDER_DIFFERENCE_DEG: f64 = 2.0;
 
-/// Channels of a log with the warnings of their choice.
+/// Series of the instruments chosen for every channel, with the warnings of the choice.
 pub(super) struct ChosenInstruments<'a> {
     instruments: &'a [NmeaInstrument],
     pub series: Vec<Series>,
-    /// Decisions between instruments, and implausible entries.
+    /// Warnings of decisions between instruments, and of invalid entries.
     pub warnings: Vec<Warning>,
 }
 
 impl<'a> ChosenInstruments<'a> {
-    /// All channels of the instruments.
+    /// Channels of the instruments, each from the best instrument.
     pub fn from_instruments(instruments: &'a [NmeaInstrument]) -> Self {
         let mut choice = Self { instruments, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
         choice.single("rudder order", NmeaQuantity::RudderOrder, Channel::RudderOrder, |_| true);
         choice.single("yaw rate", NmeaQuantity::YawRate, Channel::YawRate, |_| true);
-        choice.single("roll angle", NmeaQuantity::Transducer, Channel::Roll, |instrument| instrument.part[0] == b'O');
+        choice.single("roll angle", NmeaQuantity::Transducer, Channel::Roll, |instrument| {
+            instrument.instrument_mark[0] == b'O'
+        });
         choice.speed();
         choice.surge_and_sway();
         choice.position();
@@ -137,7 +139,7 @@ impl<'a> ChosenInstruments<'a> {
     fn push(&mut self, channel: Channel, chosen: Offer, values: impl IntoIterator<Item = f64>) {
         let source = Some(chosen.name().to_owned());
         let mut series = Series { channel, time: Vec::new(), values: Vec::new(), source };
-        for (&time, value) in chosen.instrument.at.iter().zip(values) {
+        for (&time, value) in chosen.instrument.instants.iter().zip(values) {
             let time = rounded(time);
             // Two readings at the same instant would be a step without duration.
             if series.time.last().is_none_or(|&last| time > last) {
@@ -191,7 +193,8 @@ impl<'a> ChosenInstruments<'a> {
     /// Adds the rudder: a single rudder, or the mean of two that agree.
     fn rudder(&mut self) {
         let mut offers = self.offers(&[(NmeaQuantity::RudderStarboard, 0), (NmeaQuantity::RudderPort, 0)], |_| true);
-        offers.extend(self.offers(&[(NmeaQuantity::Transducer, 1)], |instrument| instrument.part[0] == b'R'));
+        offers
+            .extend(self.offers(&[(NmeaQuantity::Transducer, 1)], |instrument| instrument.instrument_mark[0] == b'R'));
         let Some(chosen) = self.pick("rudder angle", offers, false) else { return };
         if !chosen.instrument.sends(b"RSA") {
             return self.push_column(Channel::Rudder, chosen);
@@ -275,10 +278,11 @@ impl<'a> ChosenInstruments<'a> {
     /// Adds the propeller rate: shafts before engines, the mean of several shafts.
     fn propeller(&mut self) {
         let mut offers = self.offers(&[(NmeaQuantity::Revolutions, 0)], |_| true);
-        let group = |offer: &Offer| (offer.instrument.address, offer.instrument.source, offer.instrument.part[0]);
+        let group =
+            |offer: &Offer| (offer.instrument.address, offer.instrument.source, offer.instrument.instrument_mark[0]);
         let mut leaders: Vec<Offer> = Vec::new();
         for offer in &mut offers {
-            offer.class = usize::from(offer.instrument.part[0] == b'E');
+            offer.class = usize::from(offer.instrument.instrument_mark[0] == b'E');
             match leaders.iter_mut().find(|leader| group(leader) == group(offer)) {
                 Some(leader) if leader.readings < offer.readings => *leader = *offer,
                 Some(_) => {}
@@ -289,11 +293,11 @@ impl<'a> ChosenInstruments<'a> {
         offers.retain(|shaft| group(shaft) == group(&chosen) && !shaft.is_sparse(chosen.readings));
         // The sign is the sense of rotation seen from astern: outward turning shafts have opposite signs.
         let is_counter = |shaft: &&Offer| shaft.values().iter().filter(|value| value.is_finite()).sum::<f64>() < 0.0;
-        let mut values = vec![0.0; chosen.instrument.at.len()];
+        let mut values = vec![0.0; chosen.instrument.instants.len()];
         for shaft in &offers {
             let factor = if is_counter(&shaft) { -1.0 } else { 1.0 } / offers.len() as f64;
-            let mut near = Nearest::new(&shaft.instrument.at, shaft.values());
-            for (value, &time) in values.iter_mut().zip(&chosen.instrument.at) {
+            let mut near = Nearest::new(&shaft.instrument.instants, shaft.values());
+            for (value, &time) in values.iter_mut().zip(&chosen.instrument.instants) {
                 *value += factor * near.at(time);
             }
         }
@@ -309,7 +313,7 @@ impl<'a> ChosenInstruments<'a> {
     }
 
     fn wind(&mut self) {
-        let reference = |letter: u8| move |mwv: &NmeaInstrument| mwv.sends(b"MWV") && mwv.part[0] == letter;
+        let reference = |letter: u8| move |mwv: &NmeaInstrument| mwv.sends(b"MWV") && mwv.instrument_mark[0] == letter;
         let relative = self.offers(&[(NmeaQuantity::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
             self.push_column(Channel::WindRelativeSpeed, chosen.sibling(0));
@@ -328,7 +332,7 @@ impl<'a> ChosenInstruments<'a> {
             return self.warn(WarningCode::LeftOut, format!("{from_bow} {text}"));
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
-        let readings = chosen.instrument.at.iter().zip(chosen.values());
+        let readings = chosen.instrument.instants.iter().zip(chosen.values());
         let values: Vec<f64> = readings.map(|(&time, from)| wrapped_to_circle(from + near.at(time))).collect();
         self.push(Channel::WindTrueFrom, chosen, values);
         let text = "gives the direction of the true wind from the bow; the heading is added to it";

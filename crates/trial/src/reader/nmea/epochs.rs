@@ -1,5 +1,5 @@
 //! Instants of sentences. Epochs begin at sentences with UTC, or at the stamps before sentences; several sentences of
-//! an instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than the usual one is
+//! an instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than usual is
 //! filled at the usual pace, and its end stays empty.
 
 use document::{Warning, WarningCode};
@@ -33,7 +33,7 @@ pub(super) fn timing_from_stamps(log: &mut NmeaLog) -> Timing {
     let (mut spread, mut disordered) = (0, 0);
     for instrument in &mut log.instruments {
         let mut latest = f64::NEG_INFINITY;
-        for at in instrument.at.iter_mut().filter(|at| at.is_finite()) {
+        for at in instrument.instants.iter_mut().filter(|at| at.is_finite()) {
             if *at < latest {
                 *at = f64::NAN;
                 disordered += 1;
@@ -42,7 +42,7 @@ pub(super) fn timing_from_stamps(log: &mut NmeaLog) -> Timing {
             }
         }
         drop_rows(instrument);
-        spread += usize::from(spread_stamps(&mut instrument.at));
+        spread += usize::from(spread_stamps(&mut instrument.instants));
     }
     let neighbours = if log.counts.stray_stamps == 1 { "its" } else { "their" };
     let mut warnings: Vec<Warning> = [
@@ -106,18 +106,18 @@ pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem
     let mut groups = Vec::new();
     for instrument in &mut log.instruments {
         groups.clear();
-        let mut row = instrument.at.partition_point(|&line| line < epochs[0].line);
+        let mut row = instrument.instants.partition_point(|&line| line < epochs[0].line);
         before += row;
-        instrument.at[..row].fill(f64::NAN);
+        instrument.instants[..row].fill(f64::NAN);
         for (place, epoch) in epochs.iter().enumerate() {
             let begin = row;
             let until = epochs.get(place + 1).map_or(f64::INFINITY, |next| next.line);
-            row += instrument.at[row..].iter().take_while(|&&line| line < until).count();
+            row += instrument.instants[row..].iter().take_while(|&&line| line < until).count();
             if row > begin {
                 groups.push(Group { begin, end: row, time: epoch.time, length: lengths[place] });
             }
         }
-        several |= spread(&mut instrument.at, &groups, usual);
+        several |= spread(&mut instrument.instants, &groups, usual);
         drop_rows(instrument);
     }
     let mut warnings = vec![WarningCode::Clock.warning(format!(
@@ -153,7 +153,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
     let mut stamps = StampConverter::default();
     let read = |row: usize| {
         let stamp = Stamp::new(dated.map(|days| days[row] as i64), second[row]);
-        stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.at[row], time: rounded(time) })
+        stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.instants[row], time: rounded(time) })
     };
     let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
     let clock = stamps.clock().expect("there is a time, and each has a second");
@@ -197,7 +197,7 @@ fn first_day(instrument: &NmeaInstrument, epochs: &[Epoch], second: f64) -> Opti
     let (seconds, days) = (instrument.column(NmeaQuantity::Second)?, instrument.column(NmeaQuantity::Day)?);
     let (seconds, days) = (&instrument.columns[seconds], &instrument.columns[days]);
     let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
-    let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.at[row]).saturating_sub(1);
+    let epoch = epochs.partition_point(|epoch| epoch.line <= instrument.instants[row]).saturating_sub(1);
     let passed = (second + epochs[epoch].time - seconds[row]) / SECONDS_PER_DAY;
     Some(days[row] as i64 - passed.round() as i64)
 }
@@ -225,14 +225,14 @@ fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
 
 /// Removes the rows without an instant from the table of an instrument.
 fn drop_rows(instrument: &mut NmeaInstrument) {
-    if instrument.at.iter().all(|at| at.is_finite()) {
+    if instrument.instants.iter().all(|at| at.is_finite()) {
         return;
     }
     for column in &mut instrument.columns {
-        let mut at = instrument.at.iter();
+        let mut at = instrument.instants.iter();
         column.retain(|_| at.next().is_some_and(|at| at.is_finite()));
     }
-    instrument.at.retain(|at| at.is_finite());
+    instrument.instants.retain(|at| at.is_finite());
 }
 
 /// Seconds rounded to the microsecond: finer than the clocks, and without the rounding errors of large numbers.

@@ -21,7 +21,7 @@ pub(super) enum Line<'a> {
     Damaged,
 }
 
-/// Sentence of the standard.
+/// Parts of a sentence of the standard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame<'a> {
     /// Text before the sentence.
@@ -37,7 +37,7 @@ pub(super) struct Frame<'a> {
 /// Maximum length of a line with a sentence, bytes: 82 of the standard, and room for the text of a logger.
 const MAX_LINE_BYTES: usize = 4096;
 
-/// Frame of a line.
+/// Kind of a line, with the parts of a sentence.
 pub(super) fn frame(line: &[u8]) -> Line<'_> {
     if line.len() > MAX_LINE_BYTES {
         return Line::Damaged;
@@ -146,7 +146,7 @@ impl<'a> Fields<'a> {
         self.fields[number - 1]
     }
 
-    /// `true` for a field with a single given letter.
+    /// `true` for a field that contains only the given letter.
     pub fn is(&self, field: usize, letter: u8) -> bool {
         self.field(field) == [letter]
     }

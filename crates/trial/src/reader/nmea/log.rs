@@ -9,7 +9,7 @@ use crate::reader::error::Problem;
 use crate::reader::limits::MAX_CELLS;
 use crate::wording::shortened;
 
-/// Sentences of an instrument.
+/// Instrument of a log: its sentences of a single formatter, as a table.
 #[derive(Debug)]
 pub(super) struct NmeaInstrument {
     /// Name in messages: `$HEHDT`, `$HEHDT of GYRO1`.
@@ -18,12 +18,12 @@ pub(super) struct NmeaInstrument {
     pub address: [u8; 5],
     /// Quantities of the sentence.
     slots: &'static [NmeaQuantity],
-    /// Mark as in [`Row::part`].
-    pub part: [u8; 2],
+    /// Mark as in [`Row::instrument_mark`].
+    pub instrument_mark: [u8; 2],
     /// Number of the source as in [`PrefixReader`].
     pub source: u8,
     /// Instant of each sentence: its line number until the clock is determined, then s; NaN for an omitted sentence.
-    pub at: Vec<f64>,
+    pub instants: Vec<f64>,
     /// Values of each quantity, one per sentence.
     pub columns: Vec<Vec<f64>>,
     /// Number of invalid entries of each quantity.
@@ -54,9 +54,9 @@ const MAX_INSTRUMENTS: usize = 256;
 /// Tolerance of the order of stamps from two ports, s.
 const MAX_DISORDER_S: f64 = 1.0;
 
-/// Counts of lines.
+/// Numbers of lines and sentences by kind.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Counts {
+pub(super) struct LineCounts {
     pub blank_lines: usize,
     /// Lines of text without a sentence.
     pub text_lines: usize,
@@ -75,14 +75,14 @@ pub(super) struct Counts {
     pub stray_stamps: usize,
 }
 
-/// Content of a log so far.
+/// Sentences of a log read so far.
 #[derive(Debug, Default)]
 pub(super) struct NmeaLog {
     pub instruments: Vec<NmeaInstrument>,
     /// Keys of the instruments, in the same order; separate from the tables because they are searched for every
     /// sentence.
     keys: Vec<u64>,
-    pub counts: Counts,
+    pub counts: LineCounts,
     pub leading: PrefixReader,
     pub stamps: StampConverter,
     /// `true` for a log with stamps before its sentences.
@@ -91,7 +91,7 @@ pub(super) struct NmeaLog {
     latest: (f64, f64, usize),
     /// Line and time of the last stamp, if it is before the latest stamp.
     late: Option<(usize, f64)>,
-    /// Number of numbers in the tables, instants included.
+    /// Number of values in the tables, instants included.
     numbers: usize,
 }
 
@@ -101,7 +101,9 @@ impl NmeaLog {
         Self { has_stamps, latest: (f64::NEG_INFINITY, f64::NEG_INFINITY, 0), ..Self::default() }
     }
 
-    /// Adds a line.
+    /// Adds the line with a number.
+    ///
+    /// Fails for a date with two readings, for a clock that goes back, and beyond [`MAX_CELLS`] values.
     pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), Problem> {
         match frame(line) {
             Line::Sentence(frame) => return self.sentence(&frame, number),
@@ -127,7 +129,7 @@ impl NmeaLog {
                 self.counts.without_stamp += 1;
                 return Ok(());
             };
-            let fault = |_| Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) };
+            let fault = |_| Problem::AmbiguousDate { line: number, value: shortened(frame.before.trim()) };
             at = self.stamps.seconds(stamp).map_err(fault)?;
             if !self.follows(at, number)? {
                 self.counts.sentences += 1;
@@ -166,18 +168,18 @@ impl NmeaLog {
     /// a digit.
     fn add(&mut self, slots: &'static [NmeaQuantity], frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
-        let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);
+        let key = u64::from_be_bytes([a, b, c, d, e, row.instrument_mark[0], row.instrument_mark[1], source]);
         let number = match self.keys.iter().position(|&earlier| earlier == key) {
             Some(number) => number,
             None if self.instruments.len() < MAX_INSTRUMENTS => {
                 self.keys.push(key);
                 self.instruments.push(NmeaInstrument {
-                    name: self.name(frame.address, row.part, source),
+                    name: self.name(frame.address, row.instrument_mark, source),
                     address: frame.address,
                     slots,
-                    part: row.part,
+                    instrument_mark: row.instrument_mark,
                     source,
-                    at: Vec::new(),
+                    instants: Vec::new(),
                     columns: vec![Vec::new(); slots.len()],
                     invalid: [0; MAX_SLOTS],
                     writes_checksums: false,
@@ -191,7 +193,7 @@ impl NmeaLog {
             return false;
         }
         instrument.writes_checksums = frame.has_checksum;
-        instrument.at.push(at);
+        instrument.instants.push(at);
         for (column, value) in instrument.columns.iter_mut().zip(row.values) {
             column.push(value);
         }
@@ -214,7 +216,7 @@ impl NmeaLog {
         if lines == 1 && at >= before - MAX_DISORDER_S && before.is_finite() {
             // The previous stamp was too late.
             for instrument in &mut self.instruments {
-                if let Some(last) = instrument.at.last_mut().filter(|last| **last == latest) {
+                if let Some(last) = instrument.instants.last_mut().filter(|last| **last == latest) {
                     *last = f64::NAN;
                 }
             }

@@ -22,7 +22,7 @@ use document::{Warning, WarningCode};
 use self::choice::ChosenInstruments;
 use self::epochs::{is_or_are, rounded, timing_from_sentences, timing_from_stamps};
 use self::frame::{Line, frame};
-use self::log::{Counts, NmeaLog};
+use self::log::{LineCounts, NmeaLog};
 use self::stamp::PrefixReader;
 use super::error::Problem;
 use super::lines::Lines;
@@ -94,7 +94,7 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
 /// Channels of a log that was read to its end.
 fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, Log), Problem> {
     let counts = log.counts;
-    let Counts { blank_lines, wrong_checksums: wrong, broken_sentences: broken, .. } = counts;
+    let LineCounts { blank_lines, wrong_checksums: wrong, broken_sentences: broken, .. } = counts;
     let (written, damaged) = (lines - blank_lines, wrong + broken);
     if 2 * damaged > written {
         return Err(Problem::DamagedLog { lines: written, damaged, wrong, broken });
@@ -130,13 +130,13 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
     Some(Clock {
         day: clock.day.map(|day| day + days as i64),
         second: second - days * SECONDS_PER_DAY,
-        zone: clock.zone,
+        utc_offset_min: clock.utc_offset_min,
     })
 }
 
 /// Warnings of the omitted lines and of sentences without checksum.
-fn count_warnings(counts: &Counts, lines: usize) -> Vec<Warning> {
-    let Counts { text_lines: text, wrong_checksums: wrong, broken_sentences: broken, .. } = *counts;
+fn count_warnings(counts: &LineCounts, lines: usize) -> Vec<Warning> {
+    let LineCounts { text_lines: text, wrong_checksums: wrong, broken_sentences: broken, .. } = *counts;
     let hold = if text == 1 { "holds" } else { "hold" };
     let faults = [
         (wrong, format!("had a wrong checksum and {} left out", is_or_are(wrong))),

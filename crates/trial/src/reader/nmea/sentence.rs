@@ -129,7 +129,7 @@ const SENTENCES: [Sentence; 19] = {
         }),
         (b"RPM", &[Revolutions], |row, fields| {
             let shaft = fields.field(2).first().copied().unwrap_or(b'0');
-            row.part = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
+            row.instrument_mark = [if fields.is(1, b'E') { b'E' } else { b'S' }, shaft];
             row.take_valid(fields, 5, &[(0, 3)], -10_000.0..=10_000.0, 1.0 / 60.0);
         }),
         (b"MWV", &[WindSpeed, WindFrom], read_mwv),
@@ -155,7 +155,7 @@ pub(super) fn sentence(formatter: &[u8]) -> Option<&'static Sentence> {
 /// Number with its bounds, and its factor to SI units and radians.
 type Bounded = (Number, RangeInclusive<f64>, f64);
 
-/// Values of one NMEA 0183 sentence, in the order of its quantities.
+/// Values of an NMEA 0183 sentence, in the units of its quantities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Row {
     /// Values in the order of the quantities of the sentence; NaN for no reading.
@@ -164,12 +164,12 @@ pub(super) struct Row {
     pub invalid: [bool; MAX_SLOTS],
     /// Mark of the instrument in a sentence of several: the shaft of RPM with S or E, the reference of MWV, R for
     /// the rudder and O for roll of XDR; 0 otherwise.
-    pub part: [u8; 2],
+    pub instrument_mark: [u8; 2],
 }
 
 impl Row {
     pub fn empty() -> Self {
-        Self { values: [f64::NAN; MAX_SLOTS], invalid: [false; MAX_SLOTS], part: [0; 2] }
+        Self { values: [f64::NAN; MAX_SLOTS], invalid: [false; MAX_SLOTS], instrument_mark: [0; 2] }
     }
 
     /// Stores a number within bounds, times a factor.
@@ -247,7 +247,7 @@ impl Row {
     }
 }
 
-/// Angle reduced to [0, 2π).
+/// Angle reduced to [0, 2π), rad.
 pub(super) fn wrapped_to_circle(angle: f64) -> f64 {
     let within = angle.rem_euclid(TAU);
     // A small negative angle rounds up to the full turn.
@@ -296,7 +296,7 @@ fn read_hdg(row: &mut Row, fields: &Fields) {
 
 /// Decoder of MWV: directions are clockwise from the bow, also for the true wind.
 fn read_mwv(row: &mut Row, fields: &Fields) {
-    row.part = [fields.field(2).first().copied().unwrap_or(0), 0];
+    row.instrument_mark = [fields.field(2).first().copied().unwrap_or(0), 0];
     let factor = match fields.field(4) {
         b"K" => KILOMETRE_PER_HOUR,
         b"M" => 1.0,
@@ -320,13 +320,13 @@ pub(super) fn transducers(body: &[u8], mut each: impl FnMut(Row)) {
     while let (Some(kind), Some(value), Some(unit), Some(name)) =
         (fields.next(), fields.next(), fields.next(), fields.next())
     {
-        let part = match name.to_ascii_lowercase().as_slice() {
+        let mark = match name.to_ascii_lowercase().as_slice() {
             b"rudder" => b'R',
             b"roll" => b'O',
             _ => continue,
         };
         if kind == b"A" && unit == b"D" {
-            let mut row = Row { part: [part, 0], ..Row::empty() };
+            let mut row = Row { instrument_mark: [mark, 0], ..Row::empty() };
             row.take(0, super::frame::number(value), -90.0..=90.0, DEGREE);
             each(row);
         }

@@ -26,7 +26,7 @@ pub(super) struct PrefixReader {
 }
 
 impl PrefixReader {
-    /// Stamp before a sentence, `None` without one, and number of the source, 0 without one.
+    /// Stamp before a sentence (`None` if absent) and number of the source (0 if absent).
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
         if before != self.last {
             self.last_reading = self.parse(before);
@@ -102,7 +102,8 @@ fn parse_stamp(text: &str) -> Option<Stamp> {
     Stamp::parse(text).or_else(|| since_1970(text)).filter(Stamp::has_time)
 }
 
-/// Stamp from seconds, milliseconds or microseconds since 1970-01-01 UTC, by the number of digits.
+/// Stamp from seconds, milliseconds or microseconds since 1970-01-01 UTC, by the number of digits; `None` for any other
+/// text.
 fn since_1970(text: &str) -> Option<Stamp> {
     let (whole, decimals) = text.split_once('.').unwrap_or((text, ""));
     if !whole.bytes().chain(decimals.bytes()).all(|byte| byte.is_ascii_digit()) || decimals.len() > 12 {

@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use ship::angle::{from_deg, to_deg};
 
 use super::*;
-use crate::Noise;
+use crate::SensorNoise;
 use crate::testing::{Gaussian, Plant, trial};
 use document::Quantity;
 
@@ -241,9 +241,9 @@ fn reported_uncertainty_is_the_scatter_over_seeds() {
 #[test]
 fn declared_noise_wins_over_the_estimate() {
     let (time, heading, rudder) = Plant::default().record(300.0, 1.0);
-    let noise = Noise { heading: Some(from_deg(0.3)), ..Noise::default() };
+    let noise = SensorNoise { heading_sd: Some(from_deg(0.3)), ..SensorNoise::default() };
     let zigzag = ZigZag::from_trial(&trial(time, heading, rudder).with_noise(noise)).expect("a zig-zag");
-    assert_eq!(zigzag.heading_noise_sd, noise.heading);
+    assert_eq!(zigzag.heading_noise_sd, noise.heading_sd);
     let sd = to_deg(zigzag.overshoots[0].angle.sd.expect("declared"));
     assert!((0.1..0.3).contains(&sd), "{sd}");
 }

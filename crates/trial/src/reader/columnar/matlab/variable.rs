@@ -3,10 +3,10 @@
 use crate::reader::columnar::text;
 use crate::reader::error::Problem;
 
-/// Kind of a data element with a packed one.
+/// Kind of a data element that contains a compressed data element.
 pub const COMPRESSED: u32 = 15;
 
-/// Bytes of a number by the kind of its data element; `None` for a kind without numbers.
+/// Size of a number by the kind of its data element, bytes; `None` for a kind without numbers.
 pub fn size(kind: u32) -> Option<usize> {
     Some(match kind {
         1 | 2 => 1,
@@ -71,7 +71,7 @@ impl<'a> ByteCursor<'a> {
         Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
-    /// Next data element: its kind and its bytes; `None` if fewer bytes are left. Padding to eight bytes is skipped.
+    /// Next data element: its kind and its bytes; `None` if it is incomplete. Padding to eight bytes is skipped.
     pub fn element(&mut self) -> Option<(u32, &'a [u8])> {
         let tag = self.read_u32()?;
         if tag >> 16 != 0 {
@@ -106,7 +106,7 @@ impl Variable {
         Self { name, rows, columns, kind, bytes: numbers.to_vec(), big_endian }
     }
 
-    /// Writes a number by its index.
+    /// Appends the number with an index, column by column from 0, to a text; no change beyond the last number.
     pub fn write(&self, text: &mut String, index: usize) {
         let size = size(self.kind).unwrap_or(0);
         let mut bytes = [0; 8];

@@ -20,7 +20,7 @@ pub struct NoiseLaw {
 impl NoiseLaw {
     /// `true` if the law includes a smooth model error.
     pub fn includes_model_error(&self) -> bool {
-        matches!(self.colour.correlated, Some((CorrelatedNoise::Smooth(_), _)))
+        matches!(self.colour.correlated, Some((CorrelatedNoise::SmoothError(_), _)))
     }
 
     /// `true` if the law includes a random yaw moment.
@@ -28,7 +28,7 @@ impl NoiseLaw {
         self.colour.correlated.is_some_and(|(kind, _)| !kind.is_heading_error())
     }
 
-    /// `true` if two laws have the same kind and similar variances.
+    /// `true` if two laws have the same kind of colour, both or neither waves, and variances within a factor of 1.5.
     pub fn is_alike(&self, other: &Self) -> bool {
         let kind = |law: &Self| (law.colour.correlated.map(|(kind, _)| kind), law.colour.waves.is_some());
         let is_similar = |(a, b): (&f64, &f64)| (a / b).ln().abs() < 0.4;

@@ -1,20 +1,20 @@
 //! Entries in addition to the named effects: the random moment, and located shapes.
 
 use document::names;
-use document::trace::{DisturbanceEntry, LocatedEntry};
+use document::trace::{DisturbanceEntry, LocatedMomentEntry};
 use ship::angle::to_deg;
 
 use super::TraceParts;
 use crate::model::TermName;
 use crate::residual_analysis::heading_error_squares;
-use crate::shape::{Candidate, NamedShape};
+use crate::shape::{NamedShape, ShapeCandidate};
 
 impl TraceParts<'_> {
     /// Random moment in addition to named effects and shapes, with its share of the squared heading error; `None`
     /// without a random moment.
     pub(super) fn disturbance(&self) -> Option<DisturbanceEntry> {
-        let shapes = self.location.shapes.as_ref()?;
-        let rudder_deg = to_deg(self.location.unexplained_random_moment(self.rudder_noises)?.rudder);
+        let shapes = self.attribution.shapes.as_ref()?;
+        let rudder_deg = to_deg(self.attribution.unexplained_random_moment(self.rudder_noises)?.rudder_rms);
         let [_, after] = heading_error_squares(self.identification);
         let rows = || self.identification.iter().map(|comparison| comparison.after.errors.rows as f64);
         let of_row = self.problem.records.iter().zip(&shapes.heading_sd);
@@ -25,16 +25,18 @@ impl TraceParts<'_> {
     }
 
     /// Located shapes; a shape that accompanies a change of the ship is not listed separately.
-    pub(super) fn located(&self) -> Vec<LocatedEntry> {
-        let Some(shapes) = self.location.shapes.as_ref().filter(|all| all.is_located()) else { return Vec::new() };
+    pub(super) fn located(&self) -> Vec<LocatedMomentEntry> {
+        let Some(shapes) = self.attribution.shapes.as_ref().filter(|all| all.has_significant_shapes()) else {
+            return Vec::new();
+        };
         let mut alternatives = shapes.alternatives(|record| self.span(record));
-        let displaced = self.location.displaced.iter().map(|effect| effect.term);
+        let displaced = self.attribution.displaced.iter().map(|effect| effect.term);
         alternatives.extend(displaced.map(|(id, form, _): TermName| names::effect_form(id, form)));
         let entry = |named: &NamedShape| {
-            let Candidate { shape, record, .. } = *named.candidate;
+            let ShapeCandidate { shape, record, .. } = *named.candidate;
             let span = self.span(record);
             let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
-            LocatedEntry {
+            LocatedMomentEntry {
                 depends_on: shape.dependence(),
                 form: shape.description(span),
                 only: self.record_name(record),
@@ -49,7 +51,7 @@ impl TraceParts<'_> {
         shapes.named_shapes(|record| self.span(record)[1]).iter().map(entry).collect()
     }
 
-    /// Start and duration, s, of a record; of the longest record for what acts in all records (`None`).
+    /// Start and duration, s, of a record; for `None`, of the longest record.
     fn span(&self, record: Option<usize>) -> [f64; 2] {
         let records = &self.problem.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));

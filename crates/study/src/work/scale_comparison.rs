@@ -12,15 +12,16 @@ use trial::{Quantity, Trial};
 use crate::records::file_and_hash;
 use crate::scales::RescaledRecords;
 
-/// Methods in order of preference if one represents all. The standard deviations of the first include the uncertainty
-/// of the noise.
+/// Methods in order of preference where a single method represents all. The standard deviations of the first include
+/// the uncertainty of the noise.
 pub const PREFERRED_METHODS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// A method with its label.
 pub type LabelledMethod = (String, Box<dyn Identifier>);
 
-/// Estimates of every method at each scale alone and its joint estimate; `None` if all fitted records have one scale.
-pub fn compared(
+/// Document entry that compares the estimates of every method at each scale alone with its joint estimate; `None` if
+/// all fitted records have the same scale.
+pub fn scales_entry(
     methods: &[LabelledMethod],
     answers: &[(MethodEntry, Option<Estimate>)],
     together: &RescaledRecords,

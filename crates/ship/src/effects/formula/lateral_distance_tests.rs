@@ -1,4 +1,4 @@
-//! The lateral way `y` of a formula, in replays of a ship with a bank.
+//! Lateral distance `y` of a formula, in replays of a ship with a bank.
 
 use super::tests::manoeuvres;
 use super::*;
@@ -60,7 +60,8 @@ fn the_way_is_the_sum_of_the_speed_aside() {
     }
 }
 
-/// Lateral way under rotation and mirror image: it rotates with the record, and changes sides in the mirror image.
+/// Lateral distance under rotation and mirror image: unchanged by a rotation of the record, and of opposite sign in
+/// the mirror image.
 #[test]
 fn only_the_course_at_the_start_matters() {
     let ship = banked("bank = c * y", vec![-3e-4]);
@@ -108,7 +109,7 @@ fn a_way_carries_its_derivatives() {
     }
 }
 
-/// Unit of the lateral way: if some records have no speed, the speed of the other records is not used.
+/// Unit of the lateral distance: if some records have no speed, the speed of the other records is not used.
 #[test]
 fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {

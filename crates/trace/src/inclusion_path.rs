@@ -10,20 +10,20 @@ use crate::analysis::Analysis;
 use crate::fit::{StoppingRule, StructureFit};
 use crate::model::TermName;
 use crate::noise::NoiseColour;
-use crate::weights::NoiseLaw;
+use crate::noise_law::NoiseLaw;
 
 /// Nested models from the base to the most probable structure, one term added per step.
 #[derive(Debug, Clone)]
-pub struct Staircase {
+pub struct InclusionPath {
     /// Times of the observed rows of the first record, s.
     pub time: Vec<f64>,
     /// Steps, the base first.
-    pub steps: Vec<StairStep>,
+    pub steps: Vec<InclusionStep>,
 }
 
-/// Step of a staircase: the term it adds, and the replay error of the model with it.
+/// Step of an inclusion path: the term it adds, and the replay error of the model with it.
 #[derive(Debug, Clone)]
-pub struct StairStep {
+pub struct InclusionStep {
     /// Term added to the step before; `None` for the base.
     pub term: Option<TermName>,
     /// Root mean square heading error over the rows of all fitted records, rad.
@@ -32,7 +32,7 @@ pub struct StairStep {
     pub residual: Vec<f64>,
 }
 
-impl StairStep {
+impl InclusionStep {
     fn new(term: Option<TermName>, fit: &StructureFit) -> Self {
         Self { term, rmse: root_mean_square(fit), residual: fit.residual[0].clone() }
     }
@@ -45,29 +45,29 @@ fn root_mean_square(fit: &StructureFit) -> f64 {
 
 impl Analysis {
     /// Steps to the most probable structure; `None` if it has no terms, or if an error is not finite.
-    pub fn staircase(&self) -> Option<Staircase> {
+    pub fn inclusion_path(&self) -> Option<InclusionPath> {
         let problem = &self.problem;
         let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
         let law = NoiseLaw { colour: NoiseColour::WHITE, ..self.full.law.clone() };
-        let weights = problem.weights(&law);
+        let whitening = problem.whitening(&law);
         let mut fit =
-            problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &weights, StoppingRule::FINE);
+            problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &whitening, StoppingRule::FINE);
         let mut steps = Vec::new();
         while !fit.structure.terms.is_empty() {
             let places = 0..fit.structure.terms.len();
-            let without = |out: usize| (out, fit.refit_without(out, problem, &weights, StoppingRule::FINE));
+            let without = |out: usize| (out, fit.refit_without(out, problem, &whitening, StoppingRule::FINE));
             let fewer: Vec<(usize, StructureFit)> = places.into_par_iter().map(without).collect();
             let nearest = |(_, a): &(usize, StructureFit), (_, b): &(usize, StructureFit)| {
                 root_mean_square(a).total_cmp(&root_mean_square(b))
             };
             let (out, next) = fewer.into_iter().min_by(nearest)?;
-            steps.push(StairStep::new(Some(fit.structure.terms[out].name()), &fit));
+            steps.push(InclusionStep::new(Some(fit.structure.terms[out].name()), &fit));
             fit = next;
         }
-        steps.push(StairStep::new(None, &fit));
+        steps.push(InclusionStep::new(None, &fit));
         steps.reverse();
         let record = &problem.records[0];
         let time = record.observed.iter().map(|&row| record.time[row]).collect();
-        steps.iter().all(|step| step.rmse.is_finite()).then_some(Staircase { time, steps })
+        steps.iter().all(|step| step.rmse.is_finite()).then_some(InclusionPath { time, steps })
     }
 }

@@ -10,7 +10,7 @@ use crate::stream::{RngPurpose, StreamKey, normal};
 
 /// Coloured error at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct WanderPoint {
+pub(crate) struct CompassErrorPoint {
     /// Time, s.
     pub time: f64,
     /// Error, rad.
@@ -28,13 +28,13 @@ pub(crate) enum CompassReader {
 
 /// Realisation of a stationary first-order Gauss–Markov process w, at non-decreasing times.
 #[derive(Debug)]
-pub(crate) struct WanderPath {
+pub(crate) struct CompassErrorPath {
     process: GaussMarkov,
     rng: ChaCha8Rng,
-    last: Option<WanderPoint>,
+    last: Option<CompassErrorPoint>,
 }
 
-impl WanderPath {
+impl CompassErrorPath {
     /// Path at its beginning, for one reader.
     pub fn new(process: GaussMarkov, reader: CompassReader, key: &StreamKey) -> Self {
         Self { process, rng: key.indexed_rng(RngPurpose::HeadingWander, reader as u32), last: None }
@@ -46,7 +46,7 @@ impl WanderPath {
     }
 
     /// Errors at `times` (s), rad, for a path through given points.
-    pub fn errors_at(&mut self, times: &[f64], points: &[WanderPoint]) -> Vec<f64> {
+    pub fn errors_at(&mut self, times: &[f64], points: &[CompassErrorPoint]) -> Vec<f64> {
         let mut ahead = points.iter().copied().peekable();
         let mut at = |&t: &f64| {
             while let Some(passed) = ahead.next_if(|point| point.time <= t) {
@@ -62,7 +62,7 @@ impl WanderPath {
     /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each zero if there is no neighbour, w is normal about (a(1 −
     /// b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so it depends on its
     /// neighbours only.
-    fn before(&mut self, t: f64, next: Option<WanderPoint>) -> f64 {
+    fn before(&mut self, t: f64, next: Option<CompassErrorPoint>) -> f64 {
         let GaussMarkov { sd, correlation_time } = self.process;
         // Decay over a time, and 1 minus the squared decay without cancellation for short times.
         let over = |time: f64| ((-time / correlation_time).exp(), -(-2.0 * time / correlation_time).exp_m1());
@@ -70,7 +70,7 @@ impl WanderPath {
         let until = next.map_or(f64::INFINITY, |next| next.time - t);
         let ((a, variance_since), (b, variance_until), (_, variance_both)) =
             (over(since), over(until), over(since + until));
-        let error_at = |point: Option<WanderPoint>| point.map_or(0.0, |point| point.error);
+        let error_at = |point: Option<CompassErrorPoint>| point.map_or(0.0, |point| point.error);
         // Always sampled, so that an instant at a reading does not change later random numbers.
         let draw = normal(&mut self.rng);
         let error = if variance_both > 0.0 {
@@ -79,7 +79,7 @@ impl WanderPath {
         } else {
             error_at(self.last)
         };
-        self.last = Some(WanderPoint { time: t, error });
+        self.last = Some(CompassErrorPoint { time: t, error });
         error
     }
 }
@@ -91,8 +91,8 @@ mod tests {
 
     const PROCESS: GaussMarkov = GaussMarkov { sd: 0.01, correlation_time: 5.0 };
 
-    fn path(reader: CompassReader, replicate: u64) -> WanderPath {
-        WanderPath::new(PROCESS, reader, &StreamKey { seed: 11, cell: 0, replicate })
+    fn path(reader: CompassReader, replicate: u64) -> CompassErrorPath {
+        CompassErrorPath::new(PROCESS, reader, &StreamKey { seed: 11, cell: 0, replicate })
     }
 
     /// Mean products of the errors at all pairs of times, over σ², compared with exp(−|h|/τ).
@@ -124,7 +124,7 @@ mod tests {
         let times: Vec<f64> = rows.iter().chain(&readings).copied().collect();
         assert_covariance(&times, 20_000, |replicate| {
             let mut display = path(CompassReader::Display, replicate);
-            let points = readings.map(|time| WanderPoint { time, error: display.error_at(time) });
+            let points = readings.map(|time| CompassErrorPoint { time, error: display.error_at(time) });
             let errors = path(CompassReader::Record, replicate).errors_at(&rows, &points);
             assert_relative_eq!(errors[2], points[1].error, max_relative = 1e-12);
             errors.into_iter().chain(points.map(|point| point.error)).collect()
@@ -137,13 +137,13 @@ mod tests {
         let steps: Vec<f64> = (0..4000).map(f64::from).collect();
         let path_with = |correlation_time| {
             let process = GaussMarkov { correlation_time, ..PROCESS };
-            WanderPath::new(process, CompassReader::Record, &key).errors_at(&steps, &[])
+            CompassErrorPath::new(process, CompassReader::Record, &key).errors_at(&steps, &[])
         };
         let white = path_with(1e-300);
         let product = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 4000.0;
         assert_relative_eq!(product / PROCESS.sd.powi(2), 0.0, epsilon = 4.0 / 4000.0_f64.sqrt());
         let constant = path_with(1e7);
-        // σ√(2h/τ) is 1.8 % of σ over the complete record.
+        // σ√(2h/τ) is 2.8 % of σ over the complete record.
         assert!(constant.iter().all(|error| (error - constant[0]).abs() < 0.1 * PROCESS.sd));
     }
 }

@@ -1,4 +1,4 @@
-//! Reach of an axis: over data that must be visible, and over data that may be cut if there is no room.
+//! Ends of an axis: over data that must be visible, and over data that may be cut if there is no room.
 
 use estimation::statistics::upper_median;
 
@@ -6,10 +6,10 @@ use crate::axis;
 
 /// Limit of an axis against outliers: a multiple of the median extent from a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisReach {
+pub struct OutlierLimit {
     /// Multiple of the median extent.
     pub times: f64,
-    /// Centre of the axis; `None` for the median of the data.
+    /// Centre of the axis; `None` for the median of the data, which is not supported for a symmetric axis.
     pub centre: Option<f64>,
     /// `true` if the axis is symmetric about the centre.
     pub is_symmetric: bool,
@@ -18,12 +18,12 @@ pub struct AxisReach {
 /// Data along an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Extents {
-    /// Ends of everything that sets the axis, one pair per item.
+    /// Minimum and maximum of every item that sets the axis.
     pub item_ranges: Vec<(f64, f64)>,
     /// Values that are always visible.
     pub fixed: Vec<f64>,
     /// Values that may widen the axis, each with its maximum share of the range of all other data.
-    pub soft: Vec<(f64, f64)>,
+    pub clippable_values: Vec<(f64, f64)>,
 }
 
 /// Maximum share of the range by which the ends of intervals may widen an axis.
@@ -48,16 +48,16 @@ impl Extents {
         self.item_ranges.extend(axis::range(values));
     }
 
-    /// Ends of the axis, and whether a soft value is cut; `None` without data.
-    pub(super) fn ends(&self, reach: Option<AxisReach>) -> (Option<(f64, f64)>, bool) {
-        let within = reach.map_or_else(|| self.item_ranges.clone(), |reach| self.within(reach));
+    /// Ends of the axis, and whether a clippable value is cut; `None` without data.
+    pub(super) fn ends(&self, limit: Option<OutlierLimit>) -> (Option<(f64, f64)>, bool) {
+        let within = limit.map_or_else(|| self.item_ranges.clone(), |limit| self.within(limit));
         let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };
         let fixed = self.fixed.iter().copied();
         let Some((lo, hi)) = axis::range(flat(&within).into_iter().chain(fixed)) else {
-            return (axis::range(self.soft.iter().map(|(value, _)| *value)), false);
+            return (axis::range(self.clippable_values.iter().map(|(value, _)| *value)), false);
         };
         let (mut ends, mut is_cut) = ((lo, hi), false);
-        for (value, room) in self.soft.iter().filter(|(value, _)| value.is_finite()) {
+        for (value, room) in self.clippable_values.iter().filter(|(value, _)| value.is_finite()) {
             let least = if *room == MAX_INTERVAL_SHARE { LEAST_ROOM * lo.abs().max(hi.abs()) } else { 0.0 };
             let room = match hi > lo || least > 0.0 {
                 true => (room * (hi - lo)).max(least),
@@ -66,8 +66,8 @@ impl Extents {
             ends = (ends.0.min(value.max(lo - room)), ends.1.max(value.min(hi + room)));
             is_cut |= *value < lo - room || *value > hi + room;
         }
-        match reach {
-            Some(AxisReach { is_symmetric: true, centre, .. }) => {
+        match limit {
+            Some(OutlierLimit { is_symmetric: true, centre, .. }) => {
                 let centre = centre.unwrap_or(0.0);
                 let half = (ends.0 - centre).abs().max((ends.1 - centre).abs());
                 (Some((centre - half, centre + half)), is_cut)
@@ -76,8 +76,8 @@ impl Extents {
         }
     }
 
-    /// Extents within the reach of an axis; an extent partly within it is shortened.
-    fn within(&self, AxisReach { times, centre, .. }: AxisReach) -> Vec<(f64, f64)> {
+    /// Extents within the limit of an axis; an extent partly within it is shortened.
+    fn within(&self, OutlierLimit { times, centre, .. }: OutlierLimit) -> Vec<(f64, f64)> {
         let middles = self.item_ranges.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
         let extents = self.item_ranges.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
@@ -94,8 +94,8 @@ impl Extents {
         let mut values: Vec<f64> = all.filter(|value| *value >= 0.0 && value.is_finite()).collect();
         let lowest = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
         let highest = values.iter().copied().fold(0.0, f64::max);
-        let soft = self.soft.iter().map(|(value, _)| *value).filter(|value| *value > LOWEST * lowest);
-        values.extend(soft.map(|value| value.min(HIGHEST * highest)).collect::<Vec<f64>>());
+        let clippable = self.clippable_values.iter().map(|(value, _)| *value).filter(|value| *value > LOWEST * lowest);
+        values.extend(clippable.map(|value| value.min(HIGHEST * highest)).collect::<Vec<f64>>());
         values
     }
 }
@@ -129,26 +129,26 @@ mod tests {
     fn what_is_wild_does_not_set_an_axis_and_what_is_fixed_does() {
         let mut data = Extents::default();
         [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
-        let ends = |data: &Extents, reach| data.ends(reach).0.expect("there are data");
+        let ends = |data: &Extents, limit| data.ends(limit).0.expect("there are data");
         assert_eq!(ends(&data, None), (0.099, 9.9));
-        let reach = AxisReach { times: 4.0, centre: None, is_symmetric: false };
-        assert!(ends(&data, Some(reach)).1 < 0.2, "{:?}", ends(&data, Some(reach)));
+        let limit = OutlierLimit { times: 4.0, centre: None, is_symmetric: false };
+        assert!(ends(&data, Some(limit)).1 < 0.2, "{:?}", ends(&data, Some(limit)));
         data.fixed.push(1.0);
-        assert_eq!(ends(&data, Some(reach)).1, 1.0);
-        let about = AxisReach { centre: Some(0.0), is_symmetric: true, ..reach };
+        assert_eq!(ends(&data, Some(limit)).1, 1.0);
+        let about = OutlierLimit { centre: Some(0.0), is_symmetric: true, ..limit };
         let (lo, hi) = ends(&data, Some(about));
         assert_eq!(lo, -hi);
     }
 
     #[test]
-    fn soft_values_widen_an_axis_as_far_as_there_is_room() {
+    fn clippable_values_widen_an_axis_as_far_as_there_is_room() {
         let mut data = Extents::default();
         data.add([0.0, 10.0]);
-        data.soft = vec![(12.0, 0.25)];
+        data.clippable_values = vec![(12.0, 0.25)];
         assert_eq!(data.ends(None), (Some((0.0, 12.0)), false));
-        data.soft.push((1e9, 0.25));
+        data.clippable_values.push((1e9, 0.25));
         assert_eq!(data.ends(None), (Some((0.0, 12.5)), true));
-        data.soft = vec![(0.1, 1.0), (1e-9, 1.0), (40.0, 1.0)];
+        data.clippable_values = vec![(0.1, 1.0), (1e-9, 1.0), (40.0, 1.0)];
         data.item_ranges = vec![(1.0, 10.0)];
         assert_eq!(data.positive(), [1.0, 10.0, 40.0]);
     }
