@@ -152,9 +152,8 @@ impl ShipMixture {
         check_completed(trial.name(), made.len(), draws)?;
         let (most_probable, _) = sail(0, &[]).ok_or_else(|| too_few_error(trial.name(), made.len(), draws))?;
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-        let of_row = |row: usize| quantiles(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>());
-        let bands = (0..rows.len()).map(of_row).collect();
-        let heading = BandedCurve { quantiles: bands, most_probable: at_rows(&most_probable), time };
+        let bands = (0..rows.len()).map(|row| quantiles(&mut headings.iter().map(|psi| psi[row]).collect::<Vec<_>>()));
+        let heading = BandedCurve { quantiles: bands.collect(), most_probable: at_rows(&most_probable), time };
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let largest_rates = made.iter().map(SimulatedManoeuvre::max_yaw_rate);

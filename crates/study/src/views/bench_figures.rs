@@ -153,7 +153,8 @@ fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
         columns: share_scale(boards.iter().map(column).collect()),
         note: Some(format!(
             "Score: {score}. Left of the line a method is better than {}. Medians over the cases; hollow: single cases if \
-             fewer than {MIN_SUMMARISED_VALUES}. Equal values coincide. Intervals need six independent records.",
+             fewer than {MIN_SUMMARISED_VALUES}. Near values are drawn above each other. Intervals need six independent \
+             records.",
             results.reference
         )),
         ..NamedRows::default()
