@@ -31,12 +31,15 @@ HEAD = "# Results\n"
 STUDIES = """
 ## Studies
 
-Each section is a study: its question, its result and, in most sections, the figure that shows the result. The studies behind the answers
-above come first, in the same order; the others follow by name. The name leads to the whole report. The folder of a
-study also contains every number with its 95 % interval as CSV and LaTeX, and a manifest. Rows are not stored:
-`study results/published/NAME/manifest.toml --out DIR` makes them again, in `DIR/rows`, in the time that the section
-gives. A study of measured records needs their folder in `KEMPF_DATA`. The study `outside` also has answers of
-[estimators outside Kempf](../examples/external/README.md), which the manifest does not contain.
+Each section is a study: its question, its result and, in most sections, the figure that shows the result. The mark …
+means that the result is longer in the report. The name of the study leads to the report. The studies behind the answers
+above come first, in the same order; the others follow by name.
+
+The folder of a study also contains a manifest, and every number with its 95 % interval as CSV and LaTeX. It does not
+contain the rows, which are the results of each method on each trial. The command in the section makes the rows again,
+in `DIR/rows`, in the time that the section gives. A study of measured records needs the folder of these records in
+`KEMPF_DATA`. The study `outside` also has answers of [estimators outside Kempf](../examples/external/README.md), which
+the manifest does not contain.
 """
 
 

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use campaign::benchmark::board::boards;
+use campaign::benchmark::board::leaderboards;
 use campaign::benchmark::cases::BenchCase;
-use campaign::benchmark::overall::overall;
+use campaign::benchmark::overall::overall_ranking;
 use campaign::benchmark::{BenchDocument, BenchTask, naming};
-use campaign::scenario::{STRAIGHT_ON, Scenario};
+use campaign::scenario::{STRAIGHT_ON_ID, Scenario};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -34,9 +34,9 @@ fn the_published_benchmark_has_all_records_and_the_questions_of_its_scenarios() 
 #[test]
 fn the_published_leaderboards_follow_from_the_stored_answers() {
     let results = published();
-    assert_eq!(results.boards, boards(&results.cases, &results.methods, &results.reference));
-    assert_eq!(results.naming, naming::lines(&results.cases, &results.methods));
-    assert_eq!(results.overall, overall(&results.cases, &results.methods));
+    assert_eq!(results.boards, leaderboards(&results.cases, &results.methods, &results.reference));
+    assert_eq!(results.naming, naming::naming_lines(&results.cases, &results.methods));
+    assert_eq!(results.overall, overall_ranking(&results.cases, &results.methods));
     // The figures themselves, by another way: half of the scores are not larger, half are not smaller.
     for board in &results.boards {
         let cases: Vec<&BenchCase> =
@@ -59,6 +59,6 @@ fn the_floor_is_on_every_board_of_headings() {
     for board in results.boards.iter().filter(|board| board.task != BenchTask::Indices) {
         let labels: Vec<&str> = board.standings.iter().map(|standing| standing.method.as_str()).collect();
         assert_eq!(labels.len(), results.methods.len(), "{labels:?}");
-        assert!(labels.contains(&STRAIGHT_ON), "{labels:?}");
+        assert!(labels.contains(&STRAIGHT_ON_ID), "{labels:?}");
     }
 }

@@ -45,17 +45,17 @@ fn apart_deg(left: &[f64], right: &[f64]) -> f64 {
 
 #[test]
 fn the_identifiers_users_rely_on_are_all_there() {
-    let found: BTreeSet<&str> = effects::all().iter().map(|effect| effect.id()).collect();
+    let found: BTreeSet<&str> = effects::all_effects().iter().map(|effect| effect.id()).collect();
     let gone: Vec<&str> = IDS.split(' ').filter(|id| !found.contains(id)).collect();
     assert!(gone.is_empty(), "files of users name {gone:?}");
-    let forms: BTreeSet<String> = effects::all().iter().map(name).collect();
-    assert_eq!(forms.len(), effects::all().len(), "no form twice");
-    assert!(effects::all().iter().all(|effect| effect.equation().contains('=')));
+    let forms: BTreeSet<String> = effects::all_effects().iter().map(name).collect();
+    assert_eq!(forms.len(), effects::all_effects().len(), "no form twice");
+    assert!(effects::all_effects().iter().all(|effect| effect.equation().contains('=')));
 }
 
 #[test]
 fn neutral_and_typical_values_lie_within_the_bounds() {
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         assert!(!effect.parameters().is_empty());
         for p in effect.parameters() {
             let what = format!("{}: {}", name(&effect), p.symbol);
@@ -63,7 +63,7 @@ fn neutral_and_typical_values_lie_within_the_bounds() {
             assert!((p.lowest..=p.highest).contains(&p.neutral), "{what} neutral");
             assert!((p.lowest..=p.highest).contains(&p.typical), "{what} typical");
             // The mirror image of a value that changes sign has to be allowed as well.
-            assert!(!p.odd || (p.neutral == 0.0 && p.lowest == -p.highest), "{what} is odd");
+            assert!(!p.is_odd || (p.neutral == 0.0 && p.lowest == -p.highest), "{what} is odd");
             assert!(!p.symbol.is_empty() && !p.unit.is_empty());
             assert!(!p.key.is_empty() && p.key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'), "{what} key");
         }
@@ -75,12 +75,12 @@ fn neutral_and_typical_values_lie_within_the_bounds() {
 #[test]
 fn a_typical_effect_keeps_a_zig_zag_finite_and_is_seen_unless_it_needs_a_channel() {
     let plain = steer(ResponseModel::first_order().with_parameters(base()));
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         let simulated = steer(with_effect(&effect, |p| p.typical));
         let truth = &simulated.truth;
         let columns = [&truth.heading, &truth.yaw_rate, &truth.yaw_acceleration, &truth.rudder];
         assert!(columns.iter().all(|column| column.iter().all(|x| x.is_finite())), "{}", name(&effect));
-        assert!(truth.executes.len() >= 4, "{}: {} executes", name(&effect), truth.executes.len());
+        assert!(truth.execute_orders.len() >= 4, "{}: {} executes", name(&effect), truth.execute_orders.len());
         let seen = apart_deg(simulated.trial.heading(), plain.trial.heading());
         // Forms that need a measured channel have nothing to act on: the simulator measures with its own instruments
         // only.
@@ -90,14 +90,14 @@ fn a_typical_effect_keeps_a_zig_zag_finite_and_is_seen_unless_it_needs_a_channel
 
 #[test]
 fn values_at_the_bounds_do_not_break_the_equations() {
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         for value in [|p: &Parameter| p.lowest, |p: &Parameter| p.highest] {
             let response = with_effect(&effect, value);
             let dynamics: &dyn ship::Dynamics = &response;
             let mut state = vec![0.0; dynamics.dimension()];
             dynamics.approach(0.1, 0.01, &mut state);
             let mut rate = state.clone();
-            let input = ship::Input { rudder: from_deg(10.0), ..ship::Input::default() };
+            let input = ship::ShipInput { rudder: from_deg(10.0), ..ship::ShipInput::default() };
             dynamics.rates(0.0, &state, &input, &mut rate);
             assert!(rate.iter().all(|x| x.is_finite()), "{}: {rate:?}", name(&effect));
             assert!(dynamics.largest_step() > 0.0 && dynamics.dead_time().is_finite());

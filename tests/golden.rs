@@ -84,7 +84,7 @@ const TABLE: [(&str, [f64; 5]); 5] = [
 fn a_small_study_has_the_table_it_had() {
     let scenario = Scenario::parse(Path::new("golden.toml"), "golden", SCENARIO.to_owned(), None)
         .unwrap_or_else(|failure| panic!("{}", failure.message));
-    let (design, rows) = collect::in_memory(&scenario);
+    let (design, rows) = collect::collect_in_memory(&scenario);
     let table = summary::summarise(&rows, &design).methods;
     assert_eq!(table.len(), TABLE.len());
     for (line, (method, expected)) in table.iter().zip(TABLE) {

@@ -45,7 +45,7 @@ fn a_first_order_ship_turns_alike_on_any_clock() {
             let other = slowed(&case, s).run(0).truth;
             let apart = largest_apart_deg(&full.heading, &other.heading);
             assert!(apart < 1e-9, "{rudder_deg}/{heading_deg}, time times {s}: {apart} deg");
-            for (left, right) in full.executes.iter().zip(&other.executes) {
+            for (left, right) in full.execute_orders.iter().zip(&other.execute_orders) {
                 assert!((left.time * s - right.time).abs() <= 1e-11 * right.time.abs());
             }
         }
@@ -89,7 +89,7 @@ fn hull_zig_zag(parameters: MmgParameters, scale: f64) -> Arc<Truth> {
     let hull = Mmg::at_speed(parameters, speed).expect("the set balances at any size");
     let mut simulation =
         zig_zag(SimulatedShip::from_dynamics(Arc::new(hull)), 20.0, 20.0, from_deg(2.32) / time, 900.0 * time);
-    simulation.recording.period = time;
+    simulation.recording.sampling_period = time;
     simulation.run(&StreamKey::default()).expect("KVLCC2 reaches its executes").truth
 }
 
@@ -156,7 +156,7 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
     let label = |cell| BlockLabel { design: String::new(), seed: 0, program: String::new(), cell, block: 0 };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-        let (design, rows) = pool.install(|| collect::in_memory(&scenario));
+        let (design, rows) = pool.install(|| collect::collect_in_memory(&scenario));
         let layout = RowLayout::from_design(&design);
         let block = |rows: &[StudyRow]| encode(rows, &label(rows[0].cell as usize), &layout).expect("plain values");
         rows.chunk_by(|one, other| one.cell == other.cell).map(block).collect::<Vec<_>>().concat()
@@ -168,7 +168,7 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
 
 #[test]
 fn a_longer_study_begins_with_the_shorter_one() {
-    let (short, long) = (collect::in_memory(&scenario(2)).1, collect::in_memory(&scenario(4)).1);
+    let (short, long) = (collect::collect_in_memory(&scenario(2)).1, collect::collect_in_memory(&scenario(4)).1);
     let first: Vec<&StudyRow> = long.iter().filter(|row| row.replicate < 2).collect();
     assert_eq!(short.len(), 2 * 2 * 7);
     assert_eq!(short.iter().collect::<Vec<_>>(), first);

@@ -12,7 +12,7 @@ use ship::angle::to_deg;
 use study::views::fit_page;
 use study::work::fit;
 use trial::reader::read_from_reader;
-use trial::{Log, Quantity, ReadError, ReadRecord, ZigZag};
+use trial::{InstrumentLog, Quantity, ReadError, ReadRecord, ZigZag};
 
 /// Deviations, in standard deviations of the difference, within which two answers are one.
 const SAME: f64 = 2.0;
@@ -31,7 +31,7 @@ fn read(file: &File) -> Result<ReadRecord, ReadError> {
         None => read_from_reader(Path::new(file.name), file.bytes.as_slice(), None, None),
         Some(beside) => {
             let path = |name| logs::folder().join(name);
-            Log::open(&path(file.name), None, &[path(beside)])?.into_trial(None)
+            InstrumentLog::open(&path(file.name), None, &[path(beside)])?.into_trial(None)
         }
     }
 }
@@ -121,7 +121,7 @@ fn said(text: &str) -> Result<([Quantity; 2], String), String> {
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method).expect("it is among them");
     let own = entry.parameters.expect("it answered");
     let warnings: Vec<String> = document.verdict_warnings().map(ToString::to_string).collect();
-    let words = format!("{}\n{}", fit_page::verdict(&document).unwrap_or_default(), warnings.join("\n"));
+    let words = format!("{}\n{}", fit_page::fit_verdict(&document).unwrap_or_default(), warnings.join("\n"));
     Ok(([own.k_per_s, own.t_s], words))
 }
 

@@ -179,7 +179,7 @@ impl Notation {
 }
 
 fn names_of(wanted: impl Fn(ColumnMeaning) -> bool) -> Vec<&'static str> {
-    names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect()
+    names::known_column_names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect()
 }
 
 fn one_of<T: Clone>(list: &[T], chance: &mut ChaCha8Rng) -> T {
@@ -188,14 +188,15 @@ fn one_of<T: Clone>(list: &[T], chance: &mut ChaCha8Rng) -> T {
 
 fn angle(channel: Channel, chance: &mut ChaCha8Rng) -> Angle {
     let names = names_of(|said| said == ColumnMeaning::Channel(channel, None));
-    let units: Vec<(&'static str, Unit)> = names::units().filter(|(_, unit)| channel.units().contains(unit)).collect();
+    let units: Vec<(&'static str, Unit)> =
+        names::known_unit_names().filter(|(_, unit)| channel.units().contains(unit)).collect();
     Angle { name: one_of(&names, chance), unit: one_of(&units, chance), upper: chance.random() }
 }
 
 fn clock(chance: &mut ChaCha8Rng) -> (Clock, &'static str) {
     if chance.random() {
         let seconds = [Unit::Second, Unit::Millisecond, Unit::Minute];
-        let counts: Vec<_> = names::units().filter(|(_, unit)| seconds.contains(unit)).collect();
+        let counts: Vec<_> = names::known_unit_names().filter(|(_, unit)| seconds.contains(unit)).collect();
         let (name, unit) = one_of(&counts, chance);
         return (Clock::Count(unit), name);
     }

@@ -26,7 +26,7 @@ fn own_zig_zag(vessel: SimulatedShip, rate: f64, unit: f64, angle_deg: f64, firs
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, rate, 1.0);
     simulation.manoeuvre = simulation.manoeuvre.with_first_side(first).until_execute(EXECUTES);
     simulation.recording.duration = None;
-    simulation.recording.period = 0.05 * unit;
+    simulation.recording.sampling_period = 0.05 * unit;
     simulation
 }
 
@@ -45,8 +45,14 @@ fn run(simulation: &Simulation, what: &str) -> (Trial, Truth) {
 }
 
 fn assert_finite(what: &str, truth: &Truth) {
-    let columns =
-        [&truth.time, &truth.heading, &truth.yaw_rate, &truth.yaw_acceleration, &truth.rudder, &truth.disturbance];
+    let columns = [
+        &truth.time,
+        &truth.heading,
+        &truth.yaw_rate,
+        &truth.yaw_acceleration,
+        &truth.rudder,
+        &truth.disturbance_rudder,
+    ];
     for column in columns.into_iter().chain(&truth.speed) {
         assert!(column.iter().all(|x| x.is_finite()), "{what}");
     }
@@ -54,7 +60,7 @@ fn assert_finite(what: &str, truth: &Truth) {
 
 #[test]
 fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
-    for ship in ships::all() {
+    for ship in ships::all_ships() {
         for angle_deg in [10.0, 20.0] {
             for first in [Side::Starboard, Side::Port] {
                 let what = format!("{} {angle_deg}/{angle_deg} {first:?}", ship.id);
@@ -62,11 +68,11 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
                     own_zig_zag(SimulatedShip::from_ship(&ship), rate_of(&ship), unit_of(&ship), angle_deg, first);
                 let (trial, truth) = run(&simulation, &what);
                 assert_finite(&what, &truth);
-                assert_eq!(truth.executes.len(), EXECUTES, "{what}");
-                for (k, execute) in truth.executes.iter().enumerate() {
+                assert_eq!(truth.execute_orders.len(), EXECUTES, "{what}");
+                for (k, execute) in truth.execute_orders.iter().enumerate() {
                     let side = first.sign() * if k % 2 == 0 { 1.0 } else { -1.0 };
                     let heading = if k == 0 { 0.0 } else { -side * from_deg(angle_deg) };
-                    assert_eq!(execute.order, side * from_deg(angle_deg), "{what}");
+                    assert_eq!(execute.ordered_rudder, side * from_deg(angle_deg), "{what}");
                     assert!(
                         (execute.heading - heading).abs() < 1e-9,
                         "{what}: execute {k} at {}",
@@ -82,7 +88,7 @@ fn every_ship_reaches_its_executes_in_10_10_and_20_20_to_either_side() {
                     read.nominal_angles
                 );
                 let read = read.initial_turning_time.map(|time| time.value).expect("the record begins with the trial");
-                assert!((read / truth.executes[1].time - 1.0).abs() < 0.02, "{what}: t_a {read} s");
+                assert!((read / truth.execute_orders[1].time - 1.0).abs() < 0.02, "{what}: t_a {read} s");
             }
         }
     }
@@ -106,7 +112,7 @@ fn has_sides(ship: &Ship) -> bool {
 /// tanker, wake and flow straightening of the MMG hulls differ by side.
 #[test]
 fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
-    let mut vessels: Vec<(String, SimulatedShip, f64, f64)> = ships::all()
+    let mut vessels: Vec<(String, SimulatedShip, f64, f64)> = ships::all_ships()
         .iter()
         .filter(|ship| !has_sides(ship))
         .map(|ship| (ship.id.to_string(), SimulatedShip::from_ship(ship), rate_of(ship), unit_of(ship)))
@@ -128,7 +134,7 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
         let hull = Mmg::at_speed(evened(parameters), speed).expect("the evened set balances");
         vessels.push((name.into(), SimulatedShip::from_dynamics(Arc::new(hull)), from_deg(rate_deg), unit));
     }
-    assert_eq!(vessels.len(), ships::all().len(), "every ship has its turn");
+    assert_eq!(vessels.len(), ships::all_ships().len(), "every ship has its turn");
     for (what, vessel, rate, unit) in vessels {
         for angle_deg in [10.0, 20.0] {
             let [starboard, port] = [Side::Starboard, Side::Port]
@@ -144,11 +150,11 @@ fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
 /// The hulls that are not even really are not: port-first differs from starboard-first.
 #[test]
 fn a_built_in_asymmetry_is_seen() {
-    for ship in ships::all().iter().filter(|ship| has_sides(ship)) {
+    for ship in ships::all_ships().iter().filter(|ship| has_sides(ship)) {
         let overshoot = |side| {
             let (_, truth) =
                 run(&own_zig_zag(SimulatedShip::from_ship(ship), rate_of(ship), unit_of(ship), 10.0, side), &ship.id);
-            truth.executes[1].time
+            truth.execute_orders[1].time
         };
         let (starboard, port) = (overshoot(Side::Starboard), overshoot(Side::Port));
         assert!((starboard / port - 1.0).abs() > 1e-3, "{}: {starboard} s and {port} s", ship.id);
@@ -195,11 +201,11 @@ type Disturbance = (&'static str, fn(&mut Disturbances));
 #[test]
 fn every_disturbance_moves_the_ship() {
     let disturbances: [Disturbance; 6] = [
-        ("wind", |d| d.wind = Some(Wind { moment: 0.02, from: 1.0, speed: Some(10.0), gusting: None })),
+        ("wind", |d| d.wind = Some(Wind { moment: 0.02, from_direction: 1.0, speed: Some(10.0), gusting: None })),
         ("gusts", |d| d.gusts = Some(GaussMarkov { sd: 0.02, correlation_time: 10.0 })),
-        ("drift", |d| d.drift = 1e-4),
+        ("drift", |d| d.moment_drift = 1e-4),
         ("squall", |d| d.squall = Some(Squall { start: 50.0, duration: 60.0, edge: 10.0, moment: 0.03 })),
-        ("random walk", |d| d.random_walk = 1e-3),
+        ("random walk", |d| d.moment_random_walk = 1e-3),
         ("waves", |d| d.waves = Some(WaveSpectrum { sd: 0.007, frequency: 0.6, damping: 0.1 })),
     ];
     let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).lasting(270.0);

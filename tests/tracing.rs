@@ -5,15 +5,15 @@
 use std::io::Write as _;
 use std::sync::Arc;
 
-use document::trace::{Dependence, EffectEntry, Outcome};
+use document::trace::{CandidateOutcome, Dependence, EffectEntry};
 use kempf_tests::records::{mirrored, zig_zag};
 use ship::angle::from_deg;
-use ship::dynamics::{Dynamics, Input, Motion};
+use ship::dynamics::{Dynamics, Motion, ShipInput};
 use ship::effects::{self, Effect, listed_effect};
 use ship::{Polyline, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Squall};
 use simulate::{SimulatedShip, Simulation, StreamKey};
-use trace::{Analysis, Selection, Settings, Verdict};
+use trace::{Analysis, Selection, Settings, TraceVerdict};
 use trial::{Channel, Columns, RecordOrigin, Trial};
 
 /// An effect with its parameters.
@@ -99,7 +99,7 @@ const NOT_SHOWN: [(&str, &str); 2] = [("rudder_saturation", "stall"), ("rudder_d
 fn simulated() -> Vec<Missing> {
     let sizes = sizes();
     let name = |effect: &Arc<dyn Effect>| (effect.id(), effect.form());
-    let shown = effects::all().into_iter().filter(|effect| effect.needs().is_none());
+    let shown = effects::all_effects().into_iter().filter(|effect| effect.needs().is_none());
     let shown = shown.filter(|effect| !NOT_SHOWN.contains(&name(effect)));
     let sized = shown.map(|effect| {
         let known = sizes.iter().find(|(known, _)| name(known) == name(&effect));
@@ -123,10 +123,10 @@ fn every_effect_is_named_from_the_csv_alone() {
             names(&analysis)
         );
         let document = &analysis.document;
-        assert_eq!(document.verdict, Verdict::Traced, "{id} ({form})");
+        assert_eq!(document.verdict, TraceVerdict::Traced, "{id} ({form})");
         assert_eq!(document.effects.len(), 1, "{id} ({form}): named {:?}", names(&analysis));
         let own = &document.effects[0];
-        let error = analysis.identification[0].after.errors.heading;
+        let error = analysis.identification[0].average_replay.errors.heading_rmse;
         if id == "wave_yaw" {
             let [sd, frequency] = ["σ_w", "ω₀"].map(|symbol| found(own, symbol).0);
             assert!((sd / values[0] - 1.0).abs() < 0.5 && (frequency - 0.6).abs() < 0.1, "{own:?}");
@@ -160,7 +160,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
         sway: sway.as_ref(),
         wind_speed: wind.as_ref(),
         wind_from: from.as_ref(),
-        propeller: propeller.as_ref(),
+        propeller_rate: propeller.as_ref(),
         ..ship::replay::RecordedSignals::from_rudder(helm.rudder_signal())
     };
     let response = ship(vec![(effect, values)]);
@@ -186,7 +186,8 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
     columns
         .extend(channels.iter().map(|(channel, value)| (*channel, time.iter().map(|&t| value(t)).collect::<Vec<_>>())));
     let origin = RecordOrigin::Simulated { scenario: "channel".into(), cell: 0, replicate: 0 };
-    Trial::new("channel", origin, Columns { time, channels: columns, unknown: Vec::new() }).expect("a valid record")
+    Trial::new("channel", origin, Columns { time, channels: columns, unknown_columns: Vec::new() })
+        .expect("a valid record")
 }
 
 /// Effects that act through measured channels, and the form in which each is looked for.
@@ -203,7 +204,7 @@ fn with_channels() -> [(Missing, Vec<Signal>, &'static str); 5] {
     let propeller_inflow = SpeedLoss::Propeller { approach_revolutions: 2.0 };
     [
         (
-            (find("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
+            (find_effect("sway_coupling_measured", "measured sway", &[5.0]).expect("on the list"), vec![-0.3]),
             vec![(Channel::Sway, |t| 0.4 * (0.11 * t).sin())],
             "measured sway",
         ),
@@ -244,7 +245,7 @@ fn a_bank_by_the_lateral_way_is_named() {
         let effect = analysis.document.effects.iter().find(|effect| effect.id == "bank").expect("itself, in no group");
         let [low, high] = effect.parameters["c"].quantity.ci95.expect("an interval");
         assert!(effect.form == "c * y" && low < truth && truth < high, "{truth}: {effect:?}");
-        let error = analysis.identification[0].after.errors.heading;
+        let error = analysis.identification[0].average_replay.errors.heading_rmse;
         assert!((error / from_deg(0.05) - 1.0).abs() < 0.1, "{:.4} deg is left", error.to_degrees());
     }
 }
@@ -279,8 +280,8 @@ fn nothing_is_named_where_nothing_is_missing() {
     };
     add("heading in whole degrees", &|s| s.sensors.heading_quantum = from_deg(1.0));
     add("rudder in whole degrees", &|s| s.sensors.rudder_quantum = from_deg(1.0));
-    add("late stamps", &|s| s.sensors.jitter = 0.3);
-    add("random walk", &|s| s.disturbances.random_walk = from_deg(0.05));
+    add("late stamps", &|s| s.sensors.sampling_jitter = 0.3);
+    add("random walk", &|s| s.disturbances.moment_random_walk = from_deg(0.05));
     add("gusts", &|s| {
         s.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.5), correlation_time: 20.0 });
     });
@@ -292,10 +293,10 @@ fn nothing_is_named_where_nothing_is_missing() {
             let analysis = analysed(&[run(&simulation, replicate)], &[]);
             let named = names(&analysis);
             if name == "white noise" {
-                assert_eq!((analysis.document.verdict, named.len()), (Verdict::Clean, 0));
+                assert_eq!((analysis.document.verdict, named.len()), (TraceVerdict::Clean, 0));
                 assert!(analysis.document.residual.before.whiteness_p > 1e-4);
                 let one = &analysis.identification[0];
-                assert!(one.after.errors.heading <= 1.0001 * one.before.errors.heading);
+                assert!(one.average_replay.errors.heading_rmse <= 1.0001 * one.base_replay.errors.heading_rmse);
             }
             if !named.is_empty() {
                 mistaken.push(format!("{name}, {replicate}: {named:?}"));
@@ -333,14 +334,19 @@ impl Dynamics for NearABank {
         state[own] = 0.0;
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         let own = self.response.dimension();
-        let disturbance = input.disturbance + 2e-4 * state[own];
-        self.response.rates(t, &state[..own], &Input { disturbance, ..*input }, &mut rate[..own]);
+        let disturbance = input.disturbance_rudder + 2e-4 * state[own];
+        self.response.rates(
+            t,
+            &state[..own],
+            &ShipInput { disturbance_rudder: disturbance, ..*input },
+            &mut rate[..own],
+        );
         rate[own] = 7.0 * state[0].sin();
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[f64], input: &ShipInput) -> Motion {
         self.response.motion(t, &state[..self.response.dimension()], input)
     }
 }
@@ -350,7 +356,7 @@ fn what_no_candidate_carries_is_seen() {
     let vessel = SimulatedShip::from_dynamics(Arc::new(NearABank { response: ship(Vec::new()) }));
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     let document = &analysis.document;
-    assert_eq!(document.verdict, Verdict::Located, "{}", document.headline);
+    assert_eq!(document.verdict, TraceVerdict::Located, "{}", document.headline);
     assert_eq!(document.located[0].depends_on, Dependence::LateralDistance, "{:?}", document.located);
     assert!(document.unexplained.signature.is_some() && !document.unexplained.present && document.effects.is_empty());
     assert!(document.headline.starts_with("The missing yaw moment depends on way to one side (moment with "));
@@ -366,12 +372,12 @@ fn one_amplitude_is_blind_for_stall_and_two_are_not() {
         let found = analysis.document.candidates.iter().find(|one| one.id == "rudder_saturation");
         found.map(|one| one.outcome)
     };
-    assert_eq!((names(&alone), outcome(&alone)), (Vec::new(), Some(Outcome::NotObservable)));
+    assert_eq!((names(&alone), outcome(&alone)), (Vec::new(), Some(CandidateOutcome::NotObservable)));
     let planned = [("10/10 again".to_owned(), small.clone()), ("30/30".to_owned(), large.clone())];
     let values = alone.planned_trial_values(&planned);
     assert_eq!(values[0].name, "30/30");
-    assert!(values[0].revealed.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[0]);
-    assert!(values[1].unobservable.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[1]);
+    assert!(values[0].revealed_effects.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[0]);
+    assert!(values[1].unobservable_effects.iter().any(|name| name.contains("rudder saturation")), "{:?}", values[1]);
     let both = analysed(&[small, large], &[]);
     assert!(is_named(&both, "rudder_saturation"), "named {:?}", names(&both));
 }
@@ -386,7 +392,7 @@ fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted(
     let is_of = |form: &str| own.form == form || own.alias_forms.iter().any(|alias| alias.form == form);
     assert!(is_of("r³") && is_of("r|r|"), "{own:?}");
     let held_out = &analysis.validation[0];
-    assert!(held_out.after.errors.heading < 0.3 * held_out.before.errors.heading);
+    assert!(held_out.average_replay.errors.heading_rmse < 0.3 * held_out.base_replay.errors.heading_rmse);
     // The same document from the same record, whatever is held out.
     let mut alone = analysed(&[fitted], &[]).document;
     alone.error.validation.clone_from(&analysis.document.error.validation);
@@ -403,7 +409,7 @@ fn port_and_starboard_are_exchanged_and_nothing_else() {
     let trial = run(&steered(SimulatedShip::from_response(ship(effects)), 10.0), 15);
     let (one, other) = (analysed(std::slice::from_ref(&trial), &[]), analysed(&[mirrored(&trial)], &[]));
     assert_eq!(names(&one), names(&other));
-    let odd: Vec<bool> = one.ship().model().parameters().map(|parameter| parameter.odd).collect();
+    let odd: Vec<bool> = one.ship().model().parameters().map(|parameter| parameter.is_odd).collect();
     let pairs = one.document.model.parameters.iter().zip(&other.document.model.parameters);
     for ((one, other), odd) in pairs.zip(odd) {
         let mirrored = other.quantity.scaled(if odd { -1.0 } else { 1.0 });
@@ -428,8 +434,8 @@ fn threads_do_not_matter() {
 #[test]
 fn every_identifier_is_considered_and_equations_are_given() {
     let analysis = analysed(&[run(&steered(SimulatedShip::from_response(ship(Vec::new())), 10.0), 17)], &[]);
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         assert!(analysis.document.candidates.iter().any(|one| one.id == effect.id()), "{}", effect.id());
     }
-    assert!(analysis.document.candidates.iter().all(|one| one.outcome != Outcome::Added));
+    assert!(analysis.document.candidates.iter().all(|one| one.outcome != CandidateOutcome::Added));
 }

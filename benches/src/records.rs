@@ -29,7 +29,11 @@ pub fn first_order_zig_zag(rows: usize) -> Simulation {
     let sensors = Sensors { heading_noise: from_deg(0.1), yaw_rate_noise: Some(from_deg(0.02)), ..Sensors::default() };
     Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },
+        recording: Recording {
+            sampling_period: PERIOD,
+            duration: Some(PERIOD * (rows - 1) as f64),
+            ..Recording::default()
+        },
         sensors,
         ..Simulation::new(
             SimulatedShip::from_first_order(FirstOrder::from_indices(K, T, 0.0)),

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use document::trace::Verdict;
+use document::trace::TraceVerdict;
 use kempf_tests::measured;
 use trace::Settings;
 
@@ -16,11 +16,11 @@ fn interpolated_headings_name_no_effect() {
     let copy = scratch.path().join("boat.csv");
     fs::write(&copy, without_jumps(&fs::read_to_string(path).expect("text"), "zcourse")).expect("a copy");
     let sidecar = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured/zigzag_30_inter_xy.trial.toml");
-    let trial = trial::read_with(&copy, Some(&sidecar)).expect("a record").trial;
+    let trial = trial::read_with_sidecar(&copy, Some(&sidecar)).expect("a record").trial;
     let analysis = trace::trace(&[trial], &[], &Settings::default()).expect("a base");
     let document = analysis.document;
     assert!(document.effects.is_empty(), "{:?}", document.effects);
-    assert_eq!(document.verdict, Verdict::Unexplained);
+    assert_eq!(document.verdict, TraceVerdict::Unexplained);
     assert!(!document.noise[0].is_adequate);
     // The rule has something to hold back: the search found effects.
     assert!(document.candidates.iter().any(|own| own.probability > 0.9), "{:?}", document.candidates);

@@ -1,18 +1,18 @@
 //! Measured trials: the parts that the search finds against those bounded by hand.
 
 use kempf_tests::measured;
-use trial::find::{Approach, DetectedManoeuvre, Signals, manoeuvres};
+use trial::find::{ApproachState, DetectedManoeuvre, LogSignals, detect_manoeuvres};
 use trial::{Channel, Columns};
 
 /// The manoeuvres of a measured record.
 fn searched(columns: &Columns) -> Vec<DetectedManoeuvre> {
     let channel = |channel| columns.channels.get(&channel).map(Vec::as_slice);
-    manoeuvres(&Signals {
+    detect_manoeuvres(&LogSignals {
         time: &columns.time,
         rudder: channel(Channel::Rudder).expect("a column"),
         heading: channel(Channel::Heading).expect("a column"),
         speed: channel(Channel::Speed),
-        propeller: channel(Channel::PropellerRate),
+        propeller_rate: channel(Channel::PropellerRate),
     })
 }
 
@@ -39,9 +39,9 @@ const BY_HAND: [(&str, &str, f64, f64); 5] = [
 fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
     for (file, name, from, until) in BY_HAND {
         let Some((_, found)) = only(&format!("esso_osaka/{file}.csv"), name) else { return };
-        assert!((found.from - from).abs() < 0.11, "{file}: from {}", found.from);
-        assert!((found.until - until).abs() < 0.11, "{file}: until {}", found.until);
-        assert_eq!(found.quality.approach, Some(Approach::Unsteady), "{file}");
+        assert!((found.start_time - from).abs() < 0.11, "{file}: from {}", found.start_time);
+        assert!((found.end_time - until).abs() < 0.11, "{file}: until {}", found.end_time);
+        assert_eq!(found.quality.approach, Some(ApproachState::Unsteady), "{file}");
     }
 }
 
@@ -57,8 +57,8 @@ const CIRCLES: [(&str, &str, f64, f64); 4] = [
 fn turns_of_esso_osaka_are_found() {
     for (file, name, from, until) in CIRCLES {
         let Some((_, found)) = only(&format!("esso_osaka/{file}.csv"), name) else { return };
-        assert!((found.from - from).abs() < 0.21, "{file}: from {}", found.from);
-        assert!((found.until - until).abs() < 0.11, "{file}: until {}", found.until);
+        assert!((found.start_time - from).abs() < 0.21, "{file}: from {}", found.start_time);
+        assert!((found.end_time - until).abs() < 0.11, "{file}: until {}", found.end_time);
     }
 }
 
@@ -81,11 +81,11 @@ const FILLED: [(&str, &str, f64, usize); 11] = [
 fn records_filled_by_a_zig_zag_are_taken_whole() {
     for (file, name, start, executes) in FILLED {
         let Some((table, found)) = only(file, name) else { return };
-        assert_eq!(found.executes, executes, "{file}");
+        assert_eq!(found.execute_count, executes, "{file}");
         let ends = (table.time[0], table.time[table.time.len() - 1]);
-        assert_eq!((found.from, found.until), ends, "{file}");
+        assert_eq!((found.start_time, found.end_time), ends, "{file}");
         let row = 1.01 * (table.time[1] - table.time[0]);
-        assert!((found.first_execute - start).abs() < row, "{file}: starts at {}", found.first_execute);
+        assert!((found.first_execute_time - start).abs() < row, "{file}: starts at {}", found.first_execute_time);
         assert_eq!(found.quality.remarks(), [""; 0], "{file}");
     }
 }
@@ -97,7 +97,7 @@ fn a_turning_circle_is_followed_by_its_pull_out() {
     let found = searched(&table);
     let names: Vec<String> = found.iter().map(|found| found.name()).collect();
     assert_eq!(names, ["turning circle 35 to port", "pull-out"]);
-    assert_eq!(found[0].from, 0.0);
-    assert!((found[0].first_execute - 4.1).abs() < 0.6 && (found[0].until - 1513.0).abs() < 1.1, "{found:?}");
-    assert!(found[1].from > found[0].until && found[1].from - found[0].until < 0.6);
+    assert_eq!(found[0].start_time, 0.0);
+    assert!((found[0].first_execute_time - 4.1).abs() < 0.6 && (found[0].end_time - 1513.0).abs() < 1.1, "{found:?}");
+    assert!(found[1].start_time > found[0].end_time && found[1].start_time - found[0].end_time < 0.6);
 }

@@ -146,7 +146,7 @@ fn mirror_images_of_one_hull_tell_the_same_physics() {
         let settings = trace::Settings { is_thorough: false, ..trace::Settings::default() };
         let analysis = trace::trace(std::slice::from_ref(&trial), &[], &settings).expect("a zig-zag has a base");
         let on = &analysis.identification[0];
-        let [before, after] = [&on.before, &on.after].map(|on| on.errors.heading);
+        let [before, after] = [&on.base_replay, &on.average_replay].map(|on| on.errors.heading_rmse);
         assert!(after < ratio * before, "{}: {} of before", trial.name(), after / before);
         let named: Vec<&str> = analysis.document.effects.iter().map(|effect| effect.id.as_str()).collect();
         let sway = ["second_order", "sway_coupling_measured"];

@@ -7,7 +7,7 @@ use document::Warning;
 use kempf_tests::measured;
 use ship::angle::from_deg;
 
-use trial::{Channel, Columns, ReadRecord, Trial, plausibility, read, read_with};
+use trial::{Channel, Columns, ReadRecord, Trial, plausibility, read, read_with_sidecar};
 
 fn measured_sidecar(stem: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured").join(format!("{stem}.trial.toml"))
@@ -55,7 +55,8 @@ fn raw_files_agree_with_their_tidy_twins() {
         ("esso_osaka_zigzag_31-Jul-2020_13_57_45", "csv", "esso_osaka/zigzag_13_57_45.csv", 817),
     ];
     for (stem, extension, twin, rows) in cases {
-        let raw = read_with(&data.join("raw").join(format!("{stem}.{extension}")), Some(&measured_sidecar(stem)));
+        let raw =
+            read_with_sidecar(&data.join("raw").join(format!("{stem}.{extension}")), Some(&measured_sidecar(stem)));
         let raw = raw.unwrap_or_else(|error| panic!("{error}"));
         assert!(are_expected(&raw.warnings, stem.starts_with("esso")), "{stem}: {:?}", raw.warnings);
         let tidy = read(&data.join(twin)).unwrap_or_else(|error| panic!("{error}")).trial;
@@ -69,8 +70,9 @@ fn raw_files_agree_with_their_tidy_twins() {
         assert!(raw.trial.particulars().is_some());
     }
     let stem = "esso_osaka_zigzag_31-Jul-2020_13_57_45";
-    let raw =
-        read_with(&data.join(format!("raw/{stem}.csv")), Some(&measured_sidecar(stem))).expect("read above").trial;
+    let raw = read_with_sidecar(&data.join(format!("raw/{stem}.csv")), Some(&measured_sidecar(stem)))
+        .expect("read above")
+        .trial;
     let tidy = read(&data.join("esso_osaka/zigzag_13_57_45.csv")).expect("read above").trial;
     for channel in
         [Channel::Speed, Channel::Sway, Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueFrom]
@@ -98,7 +100,7 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
             let sidecar = measured_sidecar(own);
             // Circles are not part of what is published.
             if stem.starts_with("zigzag") || sidecar.exists() {
-                let described = read_with(&path, Some(&sidecar)).unwrap_or_else(|error| panic!("{error}"));
+                let described = read_with_sidecar(&path, Some(&sidecar)).unwrap_or_else(|error| panic!("{error}"));
                 assert!(are_expected(&described.warnings, of_antennas), "{stem}: {:?}", described.warnings);
                 assert!(described.trial.particulars().is_some());
             }
@@ -108,8 +110,10 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
                     trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
                 channels.insert(Channel::Rudder, trial.rudder().to_vec());
                 channels.get_mut(&channel).expect("every set has it").iter_mut().for_each(|value| *value *= factor);
-                let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-                plausibility::check(&Trial::new(stem.clone(), trial.origin().clone(), columns).expect("complete"))
+                let columns = Columns { time: trial.time().to_vec(), channels, unknown_columns: Vec::new() };
+                plausibility::check_plausibility(
+                    &Trial::new(stem.clone(), trial.origin().clone(), columns).expect("complete"),
+                )
             };
             let flipped = changed(Channel::Rudder, -1.0);
             if stem.starts_with("zigzag") {

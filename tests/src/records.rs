@@ -67,9 +67,9 @@ impl Case {
         );
         simulation.manoeuvre = simulation.manoeuvre.with_first_side(self.first);
         if self.begin == Begin::Mid {
-            (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.2));
+            (simulation.recording.after_execute, simulation.recording.first_row_offset) = (Some(2), Some(1.2));
         }
-        simulation.recording.period = self.period_s;
+        simulation.recording.sampling_period = self.period_s;
         simulation.sensors.heading_noise = from_deg(self.noise_deg);
         simulation
     }
@@ -104,7 +104,7 @@ fn altered(trial: &Trial, alter: impl FnOnce(&mut Columns)) -> Trial {
     let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
         trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
     channels.insert(Channel::Rudder, trial.rudder().to_vec());
-    let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    let mut columns = Columns { time: trial.time().to_vec(), channels, unknown_columns: Vec::new() };
     alter(&mut columns);
     let made = Trial::new(trial.name(), trial.origin().clone(), columns).expect("the altered record is a record");
     let made = made.with_noise(trial.noise());
@@ -162,6 +162,6 @@ pub fn straight_run(rows: usize) -> Trial {
     let heading = time.iter().map(|t| 0.3 + from_deg(0.05) * (0.7 * t).sin()).collect();
     let channels = [(Channel::Heading, heading), (Channel::Rudder, vec![0.0; rows])].into();
     let origin = trial::RecordOrigin::Simulated { scenario: "straight run".into(), cell: 0, replicate: 0 };
-    Trial::new("straight run", origin, Columns { time, channels, unknown: Vec::new() })
+    Trial::new("straight run", origin, Columns { time, channels, unknown_columns: Vec::new() })
         .expect("a straight run is a record")
 }

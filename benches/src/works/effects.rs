@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use ship::effects::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint, RecordScales,
-    listed_effect,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
+    RecordScales, listed_effect,
 };
 use ship::replay::{RecordedSignals, replay_states};
 use ship::{Dynamics, Polyline, Real, ResponseModel, Tangent};
@@ -17,7 +17,7 @@ use crate::work::{Reach, Work, WorkGroup};
 struct CubicByHand;
 
 impl Effect for CubicByHand {
-    fn description(&self) -> Description {
+    fn description(&self) -> EffectDescription {
         listed_effect("nonlinear_damping", "r³").description()
     }
 

@@ -30,7 +30,7 @@ pub fn simulation() -> WorkGroup {
     let simulated = |name: &str, simulation: Simulation| Work::new(name, move || simulation.run(&KEY));
     let closed_form = first_order_zig_zag(ROWS);
     let integrated = Simulation { solver: Solver::RungeKutta(0.1), ..closed_form.clone() };
-    let kvlcc2 = ships::find("kvlcc2").expect("a ship of the registry");
+    let kvlcc2 = ships::find_ship("kvlcc2").expect("a ship of the registry");
     let hull = Simulation { ship: SimulatedShip::from_ship(&kvlcc2), ..closed_form.clone() };
     let prepared = PreparedSimulation::new(closed_form.clone()).expect("a zig-zag");
     let of_a_study = Work::new("first order, trial of a study", move || prepared.run(&KEY));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use campaign::collect::in_memory;
+use campaign::collect::collect_in_memory;
 use campaign::curves::zigzag_plot_data;
 use campaign::scenario::Scenario;
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
     let throughput = Path::new(env!("CARGO_MANIFEST_DIR")).join("throughput.toml");
     let scenario = Scenario::read(&throughput, None).expect("a scenario of the project");
     let scenario = Scenario { replicates: TRIALS, ..scenario };
-    move || in_memory(&scenario).1.len()
+    move || collect_in_memory(&scenario).1.len()
 }
 
 fn drawing() -> Drawing {

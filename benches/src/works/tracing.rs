@@ -42,7 +42,7 @@ fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
             eprintln!("skipped: no measured record {folder}/{name}.csv; set KEMPF_DATA to the folder that holds it");
             return None;
         }
-        let reading = trial::read_with(&path, Some(&sidecar));
+        let reading = trial::read_with_sidecar(&path, Some(&sidecar));
         Some(reading.unwrap_or_else(|error| panic!("{}: {error}", path.display())).trial)
     };
     names.iter().map(read).collect()

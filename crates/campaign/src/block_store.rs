@@ -24,7 +24,7 @@ use crate::timings::Timings;
 const MAX_BLOCK_BYTES: u64 = 1 << 30;
 
 /// Blocks of one study in a folder.
-pub struct BlockStore<'a> {
+pub struct TrialBlockStore<'a> {
     folder: PathBuf,
     design_sha256: String,
     seed: u64,
@@ -33,7 +33,7 @@ pub struct BlockStore<'a> {
     layout: RowLayout,
 }
 
-impl<'a> BlockStore<'a> {
+impl<'a> TrialBlockStore<'a> {
     /// Store in a folder for the blocks of the study and the program that a manifest names.
     pub fn new(folder: &Path, manifest: &Manifest, design: &'a Design) -> Self {
         Self {
@@ -72,7 +72,7 @@ impl<'a> BlockStore<'a> {
 
     /// Rows of a block that was read before in this run.
     ///
-    /// Fails as [`BlockStore::read`] does, and if the file was damaged since.
+    /// Fails as [`TrialBlockStore::read`] does, and if the file was damaged since.
     pub fn reread(&self, block: Block) -> Result<Vec<StudyRow>, Failure> {
         self.read(block)?.map_err(|problem| {
             Failure::execution(format!("{problem}; the file changed during this run; run the study again"))
@@ -134,7 +134,7 @@ impl<'a> BlockStore<'a> {
     /// Blocks of the design in order, each with its number of trials.
     pub fn design_blocks(&self) -> impl Iterator<Item = (Block, u64)> {
         self.design.cells.iter().enumerate().flat_map(|(cell, facts)| {
-            let count = facts.trials.end;
+            let count = facts.stored_replicates.end;
             let blocks = (0..Block::count_in_cell(count)).map(move |number| Block { cell, number });
             blocks.map(move |block| (block, block.replicate_range(count).count() as u64))
         })
@@ -166,10 +166,10 @@ impl<'a> BlockStore<'a> {
 /// Blocks of a result folder, from the file names.
 fn blocks_in(folder: &Path) -> Result<Vec<Block>, Failure> {
     let rows = folder.join(ROWS_FOLDER);
-    if !disk::is_there(&rows).on("look for", &rows)? {
+    if !disk::path_exists(&rows).on("look for", &rows)? {
         return Ok(Vec::new());
     }
-    let names = disk::names(&rows).on("list", &rows)?;
+    let names = disk::entry_names(&rows).on("list", &rows)?;
     Ok(names.iter().filter_map(|name| block_from_file_name(name, "parquet")).collect())
 }
 
@@ -179,9 +179,9 @@ pub fn has_blocks(folder: &Path) -> Result<bool, Failure> {
 }
 
 /// Removes all blocks of a folder, of any study.
-pub fn discard(folder: &ResultFolder) -> Result<(), Failure> {
+pub fn discard_blocks(folder: &ResultFolder) -> Result<(), Failure> {
     for (name, extension) in [(ROWS_FOLDER, "parquet"), (TIMINGS_FOLDER, "csv")] {
-        if disk::is_there(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
+        if disk::path_exists(&folder.path().join(name)).on("look for", &folder.path().join(name))? {
             folder.subfolder(name)?.remove_matching(|file| block_from_file_name(file, extension).is_some())?;
         }
     }

@@ -5,7 +5,7 @@ mod coloured;
 use identify::maximum_likelihood;
 use nalgebra::{Matrix2x3, Matrix3};
 use ship::FirstOrder;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderSource;
 use simulate::{SimulatedTrial, Simulation};
@@ -13,8 +13,16 @@ use trial::noise_model::{MomentKind, NoiseModel};
 
 use coloured::CompassError;
 
-/// Cramér–Rao bound of all records of one trial together: standard deviations of K (1/s), T (s) and K/T (1/s²), and the
-/// covariance of the relative errors of K and T, %².
+/// Cramér–Rao bound of one trial: minimum scatter of unbiased estimates of K and T.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CramerRaoBound {
+    /// Standard deviations of K (1/s), T (s) and K/T (1/s²).
+    pub sd: [f64; 3],
+    /// Covariance of the relative errors of K and T, %².
+    pub relative_covariance_percent2: [[f64; 2]; 2],
+}
+
+/// Cramér–Rao bound of all records of one trial together.
 ///
 /// The noise law includes compass, recorded rudder, a rate gyro without bias and scale error, and one random moment: a
 /// random walk or gusts. Wind, waves and drift are model errors and excluded; spikes, which only remove information,
@@ -26,7 +34,7 @@ pub fn cramer_rao_bound<'a>(
     simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[SimulatedTrial],
     truth: &FirstOrder,
-) -> Option<([f64; 3], [[f64; 2]; 2])> {
+) -> Option<CramerRaoBound> {
     let mut records = simulations.zip(simulated).map(|(simulation, record)| of_record(simulation, record, truth));
     let first = records.next()??;
     let covariance = records.try_fold(first, |so_far, next| {
@@ -37,13 +45,13 @@ pub fn cramer_rao_bound<'a>(
     // Gradients of ln K = ln b − ln a and ln T = −ln a.
     let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
     let relative = gradient * covariance * gradient.transpose();
-    let bound = [
+    let sd = [
         relative[(0, 0)].sqrt() * truth.K().abs(),
         relative[(1, 1)].sqrt() * truth.T().abs(),
         covariance[(1, 1)].sqrt(),
     ];
-    let percent2 = [0, 1].map(|i| [0, 1].map(|j| 1e4 * relative[(i, j)]));
-    bound.iter().all(|sd| sd.is_finite()).then_some((bound, percent2))
+    let relative_covariance_percent2 = [0, 1].map(|i| [0, 1].map(|j| 1e4 * relative[(i, j)]));
+    sd.iter().all(|sd| sd.is_finite()).then_some(CramerRaoBound { sd, relative_covariance_percent2 })
 }
 
 /// Cramér–Rao bound on the covariance of 1/T (1/s), K/T (1/s²) and K δ_r/T (rad/s²) for one record with unknown
@@ -58,7 +66,7 @@ fn of_record(simulation: &Simulation, simulated: &SimulatedTrial, truth: &FirstO
         }
     };
     let noise = noise(simulation, truth, compass)?;
-    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
+    let initial = YawState { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
     let trial = &simulated.trial;
     Some(match (white, wander) {
         (Some(white), Some(coloured)) if noise == compass => {
@@ -77,7 +85,7 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Op
     let read = recording.rudder == RudderSource::Feedback;
     // The simulation states a moment as the rudder angle of equal moment, the likelihood as a yaw acceleration.
     let b = truth.K_over_T;
-    let (moment, moment_level, moment_correlation_time) = match (disturbances.random_walk, disturbances.gusts) {
+    let (moment, moment_level, moment_correlation_time) = match (disturbances.moment_random_walk, disturbances.gusts) {
         (0.0, None) => (MomentKind::None, 0.0, f64::INFINITY),
         (walk, None) => (MomentKind::Walk, b * walk, f64::INFINITY),
         (0.0, Some(gusts)) => (MomentKind::OrnsteinUhlenbeck, b * gusts.sd, gusts.correlation_time),

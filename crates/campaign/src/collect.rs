@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::block::Block;
-use crate::block_store::{self, BlockStore};
+use crate::block_store::{self, TrialBlockStore};
 use crate::design::Design;
 use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::failure::Failure;
@@ -80,7 +80,7 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
     let scenario = Scenario::read(&folder.path().join(files::MANIFEST_FILE), None)?;
     check_same_study(&manifest, &Manifest::new(&scenario), folder.path())?;
     let design = Design::from_scenario(&scenario);
-    let store = BlockStore::new(folder.path(), &manifest, &design);
+    let store = TrialBlockStore::new(folder.path(), &manifest, &design);
     let stored = store.stored_trials(|_| true, "its trials count as missing", observer)?;
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(&scenario, Shard::WHOLE, &stored, &read);
@@ -92,7 +92,7 @@ pub fn complete(folder: &ResultFolder, observer: &dyn Observer) -> Result<Stored
         );
         return Err(Failure::in_file(&path, problem));
     }
-    let trials = plan.trials;
+    let trials = plan.cell_trial_counts;
     finish(&scenario, StudyRun { manifest, trials, computed: 0 }, folder)
 }
 
@@ -115,7 +115,7 @@ fn run(
 ) -> Result<StudyRun, Failure> {
     let manifest = begin(scenario, folder, restart)?;
     let design = Design::from_scenario(scenario);
-    let store = BlockStore::new(folder.path(), &manifest, &design);
+    let store = TrialBlockStore::new(folder.path(), &manifest, &design);
     let part = shard_blocks(scenario, shard);
     let most = max_trials(scenario, &part);
     if scenario.max_trials() == 0 {
@@ -127,7 +127,7 @@ fn run(
     let read = |block: Block| store.reread(block);
     let mut plan = TrialPlan::new(scenario, shard, &stored, &read);
     if plan.peek()?.is_none() {
-        return Ok(StudyRun { manifest, trials: plan.trials, computed: 0 });
+        return Ok(StudyRun { manifest, trials: plan.cell_trial_counts, computed: 0 });
     }
     check_same_program(&manifest, &Manifest::new(scenario), folder.path())?;
     if before > 0 {
@@ -142,12 +142,12 @@ fn run(
     let wall_time_s = before.machine.wall_time_s + start.elapsed().as_secs_f64();
     let manifest = Manifest { machine: Machine { wall_time_s, ..manifest.machine }, ..manifest };
     manifest.write(folder)?;
-    Ok(StudyRun { manifest, trials: plan.trials, computed: computed? })
+    Ok(StudyRun { manifest, trials: plan.cell_trial_counts, computed: computed? })
 }
 
 /// Failure of a study of measured records without any usable record.
 fn no_records(scenario: &Scenario) -> Failure {
-    let absent = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.absent);
+    let absent = scenario.cells.iter().filter_map(DesignCell::record_set).flat_map(|set| &set.absent_files);
     let lines: Vec<String> = absent.map(|(file, reason)| format!("  {file}: {reason}")).collect();
     let advice = format!("put them beside the scenario, or name their folder in {DATA_FOLDER_VARIABLE}");
     Failure::input(format!("{}: none of its records can be used:\n{}\n{advice}", scenario.name, lines.join("\n")))
@@ -157,7 +157,7 @@ fn no_records(scenario: &Scenario) -> Failure {
 fn warn_of_records(scenario: &Scenario, observer: &dyn Observer) {
     let mut seen = HashSet::new();
     for set in scenario.cells.iter().filter_map(DesignCell::record_set) {
-        let absent = set.absent.iter().map(|(file, reason)| format!("{file} is left out: {reason}"));
+        let absent = set.absent_files.iter().map(|(file, reason)| format!("{file} is left out: {reason}"));
         let warnings = absent.chain(set.warnings.iter().cloned());
         warnings.filter(|warning| seen.insert(warning.clone())).for_each(|warning| observer.warn(&warning));
     }
@@ -173,7 +173,7 @@ fn begin(scenario: &Scenario, folder: &ResultFolder, restart: bool) -> Result<Ma
     if restart {
         // The manifest is removed first: if the program stops here, the remaining rows belong to no study.
         folder.remove_matching(|name| [files::MANIFEST_FILE, files::LEGACY_ROWS_FILE].contains(&name))?;
-        block_store::discard(folder)?;
+        block_store::discard_blocks(folder)?;
     } else if block_store::has_blocks(folder.path())? {
         return Err(Failure::input(format!(
             "{} holds rows of an unknown study, without {}; put it back, give another folder with --out, or --restart \
@@ -237,7 +237,7 @@ enum RunEnd {
 fn run_all(
     scenario: &Scenario,
     plan: &mut TrialPlan,
-    store: &BlockStore,
+    store: &TrialBlockStore,
     progress: &Progress,
     observer: &dyn Observer,
 ) -> Result<u64, Failure> {
@@ -365,7 +365,7 @@ fn watched<'scope>(
 }
 
 /// Design and rows, in order, of a small study that is run without a folder.
-pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
+pub fn collect_in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<TrialId>| {
         let runner = runner(scenario, &tasks);
@@ -379,13 +379,13 @@ pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let none = HashMap::new();
     let mut plan = TrialPlan::new(scenario, Shard::WHOLE, &none, &|_| Ok(Vec::new()));
     run_batches(&mut plan, run, take).expect("nothing is read");
-    (designed(scenario, &plan.trials), rows)
+    (designed(scenario, &plan.cell_trial_counts), rows)
 }
 
 /// Design with the number of trials of every cell, and with the Cramér–Rao bounds of the cells.
 fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
     let mut design = Design::from_scenario(scenario);
-    design.cells.iter_mut().zip(trials).for_each(|(cell, trials)| cell.trials = 0..*trials);
+    design.cells.iter_mut().zip(trials).for_each(|(cell, trials)| cell.stored_replicates = 0..*trials);
     add_bounds(scenario, &mut design);
     design
 }
@@ -393,7 +393,7 @@ fn designed(scenario: &Scenario, trials: &[u64]) -> Design {
 /// Sets the Cramér–Rao bounds of K and T, %², of every cell.
 fn add_bounds(scenario: &Scenario, design: &mut Design) {
     let cells = design.cells.par_iter_mut().enumerate();
-    cells.for_each(|(cell, facts)| facts.bound_percent2 = engine::bound_percent2(scenario, cell));
+    cells.for_each(|(cell, facts)| facts.cramer_rao_percent2 = engine::cramer_rao_percent2(scenario, cell));
 }
 
 /// Completes the result folder: facts of the cells, showcases, timings, and the manifest last.
@@ -402,7 +402,7 @@ fn finish(scenario: &Scenario, run: StudyRun, folder: &ResultFolder) -> Result<S
     let shown = if scenario.prose.output.showcase { scenario.cells.len() } else { 0 };
     let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::from_cell(scenario, cell)).collect();
     let mut timings = Timings::default();
-    let store = BlockStore::new(folder.path(), &run.manifest, &design);
+    let store = TrialBlockStore::new(folder.path(), &run.manifest, &design);
     for (block, _) in store.design_blocks() {
         timings.merge(&store.timings(block)?);
     }

@@ -17,7 +17,8 @@ pub struct Design {
     /// Methods.
     pub methods: Vec<MethodName>,
     /// Keys that are sampled anew in every trial.
-    pub draws: Vec<String>,
+    #[serde(rename = "draws")]
+    pub drawn_keys: Vec<String>,
     /// `true` if manoeuvres are predicted from every estimate.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub predicts: bool,
@@ -37,9 +38,11 @@ pub struct CellFacts {
     /// Values of the points; `null` for an axis of labels.
     pub values: Vec<Option<f64>>,
     /// Replicates whose rows are stored.
-    pub trials: Range<u64>,
+    #[serde(rename = "trials")]
+    pub stored_replicates: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
-    pub missing: Vec<String>,
+    #[serde(rename = "missing")]
+    pub missing_effects: Vec<String>,
     /// Physics that the first-order base lacks, in a study whose scenario states it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub physics: Option<MissingPhysics>,
@@ -59,7 +62,8 @@ pub struct CellFacts {
     pub records: Vec<TrialRecords>,
     /// Cramér–Rao covariance of the relative errors of K and T, %²; `null` if every trial has its own
     /// bound, or if there is no bound.
-    pub bound_percent2: Option<[[f64; 2]; 2]>,
+    #[serde(rename = "bound_percent2")]
+    pub cramer_rao_percent2: Option<[[f64; 2]; 2]>,
 }
 
 /// Records of one trial in a study of measured records.
@@ -75,8 +79,8 @@ pub struct TrialRecords {
 
 fn trial_records(set: &RecordSet) -> Vec<TrialRecords> {
     let records = |split: &RecordSplit| TrialRecords {
-        fitted: split.fitted.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
-        validation: split.validation.map(|place| set.name(place).to_owned()),
+        fitted: split.fitted_indices.iter().map(|place| set.name(*place)).collect::<Vec<_>>().join(", "),
+        validation: split.validation_index.map(|place| set.name(place).to_owned()),
     };
     set.splits.iter().map(records).collect()
 }
@@ -85,12 +89,13 @@ impl Design {
     /// Design of a scenario, without stored trials and without bounds.
     pub fn from_scenario(scenario: &Scenario) -> Self {
         let predicts = scenario.predictions.is_some();
-        let has_limits = predicts && !scenario.draws.iter().any(|key| key.contains("length") || key.contains("speed"));
+        let has_limits =
+            predicts && !scenario.drawn_keys.iter().any(|key| key.contains("length") || key.contains("speed"));
         let is_stated = scenario.cells.iter().any(DesignCell::states_physics);
         let bare = |cell: &DesignCell| CellFacts {
             labels: cell.labels.clone(),
             values: cell.values.clone(),
-            missing: cell.missing_effects(),
+            missing_effects: cell.missing_effects(),
             physics: cell.physics().filter(|_| is_stated),
             is_base_with_effects: cell.is_base_with_effects(),
             is_compared_with_nearest: cell.is_compared_with_nearest(),
@@ -101,7 +106,7 @@ impl Design {
         Self {
             axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
             methods: scenario.method_names(),
-            draws: scenario.draws.clone(),
+            drawn_keys: scenario.drawn_keys.clone(),
             predicts,
             cells: scenario.cells.iter().map(bare).collect(),
             prose: scenario.prose.clone(),
@@ -112,7 +117,8 @@ impl Design {
     pub(crate) fn with_renewed_descriptions(&self, scenario: &Scenario) -> Self {
         let mut design = Self::from_scenario(scenario);
         for (cell, stored) in design.cells.iter_mut().zip(&self.cells) {
-            (cell.trials, cell.bound_percent2) = (stored.trials.clone(), stored.bound_percent2);
+            (cell.stored_replicates, cell.cramer_rao_percent2) =
+                (stored.stored_replicates.clone(), stored.cramer_rao_percent2);
         }
         design
     }
@@ -144,7 +150,7 @@ impl Design {
                 let axes = self.axes.len();
                 return Err(format!("cell {index} has {labels} labels and {values} values for {axes} axes"));
             }
-            if cell.trials.start > cell.trials.end {
+            if cell.stored_replicates.start > cell.stored_replicates.end {
                 return Err(format!("the trials of cell {index} end before they begin"));
             }
         }

@@ -82,13 +82,13 @@ fn if_present<T>(result: io::Result<T>) -> io::Result<Option<T>> {
 
 /// `true` if the path exists, even as a dangling link. Unlike `Path::exists`, fails if that cannot be
 /// determined.
-pub fn is_there(path: &Path) -> io::Result<bool> {
+pub fn path_exists(path: &Path) -> io::Result<bool> {
     at(path, || Ok(if_present(fs::symlink_metadata(path))?.is_some()))
 }
 
 /// `true` if the path is a link.
 pub fn is_link(path: &Path) -> io::Result<bool> {
-    Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
+    Ok(path_exists(path)? && fs::symlink_metadata(path)?.is_symlink())
 }
 
 /// Content of a regular file; `None` if there is no file. Fails for a file of more than `largest` bytes.
@@ -124,7 +124,7 @@ pub fn remove_if_there(path: &Path) -> io::Result<()> {
 }
 
 /// Names of the files and subfolders of a folder, sorted.
-pub fn names(path: &Path) -> io::Result<Vec<String>> {
+pub fn entry_names(path: &Path) -> io::Result<Vec<String>> {
     let entries = at(path, || fs::read_dir(path)?.collect::<io::Result<Vec<_>>>())?;
     let mut names: Vec<String> = entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort();
@@ -132,7 +132,7 @@ pub fn names(path: &Path) -> io::Result<Vec<String>> {
 }
 
 /// Time since the last write of a file; `None` if it cannot be determined.
-pub fn age(path: &Path) -> Option<Duration> {
+pub fn file_age(path: &Path) -> Option<Duration> {
     fs::metadata(path).ok()?.modified().ok()?.elapsed().ok()
 }
 

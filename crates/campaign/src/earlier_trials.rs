@@ -21,7 +21,7 @@ fn earlier_hull(stored: &IdentifiedHull) -> Result<EarlierHull, PredictError> {
     Ok(EarlierHull {
         form: stored.form()?,
         particulars,
-        values: DVector::from_vec(stored.values()),
+        coefficients: DVector::from_vec(stored.values()),
         covariance: DMatrix::from_fn(size, size, |row, column| stored.covariance[row][column]),
     })
 }

@@ -69,7 +69,7 @@ pub struct TrueResponses {
 pub fn true_responses(scenario: &Scenario, task: TrialId) -> Result<TrueResponses, String> {
     let key = stream_key(scenario, task);
     let trial_spec = scenario.cells[task.cell].trial_spec(&key).map_err(|refusal| refusal.to_string())?;
-    let Specification { truth, base, .. } = &*trial_spec.specification;
+    let Specification { true_response: truth, base_response: base, .. } = &*trial_spec.specification;
     let nearest = truth.or_else(|| Some(nearest_first_order(&trial_spec.specification, &key)?.response));
     Ok(TrueResponses { nearest, base: base.filter(|_| truth.is_none()) })
 }
@@ -127,7 +127,7 @@ impl<'a> TrialRunner<'a> {
         let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
         let trial =
             cell.trial_spec(&key).map_err(|refusal| format!("{} {refusal}", NO_TRIAL[0])).and_then(|trial_spec| {
-                blank.drawn = (!trial_spec.drawn.is_empty()).then(|| trial_spec.drawn.as_slice().into());
+                blank.drawn_values = (!trial_spec.drawn.is_empty()).then(|| trial_spec.drawn.as_slice().into());
                 let simulated = self.simulate(task.cell, &trial_spec, &key);
                 Ok((simulated.map_err(|error| format!("{} {error}", NO_TRIAL[1]))?, trial_spec))
             });
@@ -164,14 +164,14 @@ impl<'a> TrialRunner<'a> {
             true_t_s: reference.nearest.map(|nearest| nearest.T()),
             base_k_per_s: reference.base.map(|base| base.K()),
             base_t_s: reference.base.map(|base| base.T()),
-            bound: reference.bound.map(|(bound, _)| bound),
+            cramer_rao_sd: reference.cramer_rao_bound.map(|bound| bound.sd),
             ..blank
         };
         let trials: Vec<Trial> = simulated.into_iter().map(|record| record.trial).collect();
-        let specification = &*trial_spec.specification;
-        let check = self.scenario.predictions.as_ref();
-        let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
-        let input = TrialInput { trials: &trials, key, reference, missing: &specification.missing, check };
+        let Specification { simulation, missing_effects, .. } = &*trial_spec.specification;
+        let asked = self.scenario.predictions.as_ref();
+        let prediction_check = asked.map(|asked| PredictionCheck::new(asked, simulation, key, &trials));
+        let input = TrialInput { trials: &trials, key, reference, missing_effects, prediction_check };
         let row = |(method, procedure)| input.row(procedure, StudyRow { method, ..blank.clone() });
         cell.methods.iter().map(|method| &method.procedure).enumerate().map(row).unzip()
     }
@@ -182,7 +182,7 @@ impl<'a> TrialRunner<'a> {
         let Ok(trial_spec) = self.scenario.cells[cell].trial_spec(&key) else { return TrialReference::default() };
         match self.simulate(cell, &trial_spec, &key) {
             Ok(all) => TrialReference::from_simulated(&trial_spec, &all, &key, self.scenario.cells[cell].is_traced()),
-            Err(_) => TrialReference { nearest: trial_spec.specification.truth, ..TrialReference::default() },
+            Err(_) => TrialReference { nearest: trial_spec.specification.true_response, ..TrialReference::default() },
         }
     }
 }
@@ -192,8 +192,8 @@ pub(crate) struct TrialInput<'a> {
     pub trials: &'a [Trial],
     pub key: &'a StreamKey,
     pub reference: &'a TrialReference,
-    pub missing: &'a [String],
-    pub check: Option<PredictionCheck<'a>>,
+    pub missing_effects: &'a [String],
+    pub prediction_check: Option<PredictionCheck<'a>>,
 }
 
 impl TrialInput<'_> {
@@ -226,15 +226,13 @@ impl TrialInput<'_> {
     pub fn estimate_row(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_response_rms(trials, &estimate.response).map(to_deg);
         let validation = self.reference.validation.as_ref();
+        let ship = |facts: &RecordFacts| identified_ship::from_estimate(estimate, facts);
         StudyRow {
             heading_rmse_deg: error(self.trials),
             validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
             evaluations: Some(estimate.evaluations as f64),
-            stop: Some(estimate.stop.as_str()),
-            predicted: self
-                .check
-                .as_ref()
-                .map(|check| check.characteristics(|facts| identified_ship::from_estimate(estimate, facts))),
+            stop_reason: Some(estimate.stop.as_str()),
+            predictions: self.prediction_check.as_ref().map(|check| check.characteristics(ship)),
             ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
         }
     }
@@ -243,7 +241,7 @@ impl TrialInput<'_> {
     pub fn straight_course_row(&self, blank: &StudyRow) -> StudyRow {
         let error = |trials: &[Trial]| {
             let headings = |trial: &Trial| trial.observed_rows().map(|row| trial.heading()[row]).collect::<Moments>();
-            let sums = |sums: [f64; 2], moments: Moments| [sums[0] + moments.second, sums[1] + moments.count];
+            let sums = |sums: [f64; 2], x: Moments| [sums[0] + x.squared_deviation_sum, sums[1] + x.count];
             let [square, rows] = trials.iter().map(headings).fold([0.0; 2], sums);
             finite(to_deg((square / rows).sqrt()))
         };
@@ -269,27 +267,28 @@ impl TrialInput<'_> {
         let probability =
             |id: &str| document.candidates.iter().find(|entry| entry.id == id).map_or(0.0, |entry| entry.probability);
         let indices = &document.model.indices;
+        let band_coverage = |replay: &ReplayResult| replay.band_coverage().map(|band| band.share());
         // An effect may require speed and sway.
         let identified = |facts: &RecordFacts| {
             Some(identified_ship::from_analysis(analysis, &facts.clone().with_motion(Some(analysis), &[])))
         };
         StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
-            validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading))),
-            stop: Some(StopReason::Converged.as_str()),
-            predicted: self.check.as_ref().map(|check| check.characteristics(identified)),
+            validation_rmse_deg: validation.and_then(|on| finite(to_deg(on.errors.heading_rmse))),
+            stop_reason: Some(StopReason::Converged.as_str()),
+            predictions: self.prediction_check.as_ref().map(|check| check.characteristics(identified)),
             traced: Some(Box::new(TraceRow {
                 verdict: document.verdict,
-                named: document.effects.iter().map(NamedEffect::from_entry).collect(),
-                located: document.located.iter().map(|entry| located(entry, end)).collect(),
+                named_effects: document.effects.iter().map(NamedEffect::from_entry).collect(),
+                located_moments: document.located.iter().map(|entry| located(entry, end)).collect(),
                 probabilities: effect_ids()
                     .map(|id| (Box::from(id), (PROBABILITY_STEPS * probability(id)).round() / PROBABILITY_STEPS))
                     .filter(|(_, probability)| *probability >= MIN_PROBABILITY)
                     .collect(),
-                margin: margin(analysis, self.missing),
+                evidence_margin: margin(analysis, self.missing_effects),
                 expected_2_ln_lambda: self.reference.expected_2_ln_lambda,
-                fitted_band_coverage: analysis.identification[0].after.coverage().map(|coverage| coverage.share()),
-                validation_band_coverage: validation.and_then(ReplayResult::coverage).map(|coverage| coverage.share()),
+                fitted_band_coverage: band_coverage(&analysis.identification[0].average_replay),
+                validation_band_coverage: validation.and_then(band_coverage),
             })),
             ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
         }
@@ -299,7 +298,7 @@ impl TrialInput<'_> {
 /// Located moment of a row; a moment that ends at or after `end` (s), the end of the records, has no end.
 fn located(entry: &LocatedMomentEntry, end: f64) -> LocatedMoment {
     let is_named = |id: &&str| {
-        let name = names::effect(id);
+        let name = names::effect_name(id);
         let is_of_name = |label: &String| label.split(" (").next() == Some(&name);
         entry.alternatives.iter().any(is_of_name)
     };
@@ -314,7 +313,7 @@ fn located(entry: &LocatedMomentEntry, end: f64) -> LocatedMoment {
 
 /// Root mean square heading error of a traced model over all rows of the records, rad.
 fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
-    let errors = analysis.identification.iter().map(|judged| judged.after.errors.heading);
+    let errors = analysis.identification.iter().map(|judged| judged.average_replay.errors.heading_rmse);
     let rows = trials.iter().map(|trial| trial.len() as f64);
     let (square, rows) =
         errors.clone().zip(rows).fold((0.0, 0.0), |(square, rows), (e, n)| (square + e * e * n, rows + n));
@@ -369,9 +368,9 @@ fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
 
 /// Cramér–Rao covariance of the relative errors of K and T in a cell, %²; `None` if the bound varies between trials, or
 /// if there is no bound.
-pub fn bound_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
-    let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).bound;
-    scenario.cells[cell].is_fixed().then(bound).flatten().map(|(_, percent2)| percent2)
+pub fn cramer_rao_percent2(scenario: &Scenario, cell: usize) -> Option<[[f64; 2]; 2]> {
+    let bound = || TrialRunner::new(scenario, cell..=cell).shared(cell).cramer_rao_bound;
+    scenario.cells[cell].is_fixed().then(bound).flatten().map(|bound| bound.relative_covariance_percent2)
 }
 
 #[cfg(test)]
@@ -410,7 +409,7 @@ method.output-error = {}
             (0..trials).map(|replicate| runner.run(TrialId { cell: 0, replicate }).rows.remove(0)).collect()
         };
         let (single, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
-        let bound = |rows: &[StudyRow]| rows[0].bound.expect("white noise")[0];
+        let bound = |rows: &[StudyRow]| rows[0].cramer_rao_sd.expect("white noise")[0];
         let share = bound(&both) / bound(&single);
         assert!((share - 0.5f64.sqrt()).abs() < 0.01, "two records of one manoeuvre: {share}");
         let spread = |rows: &[StudyRow]| {

@@ -92,8 +92,8 @@ impl ResultFolder {
     /// Removes the selected files, and temporary files that killed programs left behind.
     pub fn remove_matching(&self, is_selected: impl Fn(&str) -> bool) -> Result<(), Failure> {
         let is_left =
-            |name: &str| name.starts_with(TEMPORARY_PREFIX) && disk::age(&self.path.join(name)) > Some(MAX_AGE);
-        let names = disk::names(&self.path).on("list the folder", &self.path)?.into_iter();
+            |name: &str| name.starts_with(TEMPORARY_PREFIX) && disk::file_age(&self.path.join(name)) > Some(MAX_AGE);
+        let names = disk::entry_names(&self.path).on("list the folder", &self.path)?.into_iter();
         let names = names.filter(|name| is_selected(name) || is_left(name));
         names.map(|name| self.path.join(name)).try_for_each(|path| disk::remove_if_there(&path).on("remove", &path))
     }

@@ -35,9 +35,9 @@ pub struct RecordFacts<'a> {
     pub hulls: Vec<IdentifiedHull>,
     /// Consistency checks of the records with the priors from earlier trials, one per form of hull, in the order of
     /// replay errors; rejected hulls are included.
-    pub checks: Vec<(&'static str, PriorCheck)>,
+    pub prior_checks: Vec<(&'static str, PriorCheck)>,
     /// Reason for no track from records with speed or positions; `None` if they give a track, or contain neither.
-    pub no_track: Option<String>,
+    pub no_track_reason: Option<String>,
 }
 
 impl<'a> RecordFacts<'a> {
@@ -53,8 +53,8 @@ impl<'a> RecordFacts<'a> {
             length: particular(|ship| ship.length),
             speed: particular(|ship| ship.speed),
             hulls: Vec::new(),
-            checks: Vec::new(),
-            no_track: None,
+            prior_checks: Vec::new(),
+            no_track_reason: None,
         }
     }
 
@@ -67,15 +67,15 @@ impl<'a> RecordFacts<'a> {
         let was_told = !earlier.is_empty() || analysis.is_some_and(|analysis| !analysis.hulls.is_empty());
         let tells_hull = was_told || self.trials.iter().all(has_speed);
         // Response models may replay the records better, but give no speed in another manoeuvre.
-        let mut fitted = if tells_hull { hull::fit_all(self.trials, earlier) } else { Vec::new() };
+        let mut fitted = if tells_hull { hull::fit_all_forms(self.trials, earlier) } else { Vec::new() };
         fitted.sort_by(|a, b| a.mean_square_heading_error().total_cmp(&b.mean_square_heading_error()));
         let informed = fitted.iter().filter(|hull| hull.prior.has_earlier_trials);
-        self.checks = informed.filter_map(|hull| Some((hull.prior.form.as_str(), hull.prior_check()?))).collect();
+        self.prior_checks = informed.filter_map(|hull| Some((hull.prior.form.as_str(), hull.prior_check()?))).collect();
         let hulls = hull::supported_hulls(fitted, f64::INFINITY);
         self.hulls = hulls.iter().map(|hull| self.stored(hull, hulls.len())).collect();
         if self.hulls.is_empty() && tells_hull && self.length.is_some() {
-            let reason = hull::refusal(self.trials).unwrap_or(HullFitError::NoReplay);
-            self.no_track = Some(format!("{NO_MOTION}: {reason}"));
+            let reason = hull::fit_refusal(self.trials).unwrap_or(HullFitError::NoReplay);
+            self.no_track_reason = Some(format!("{NO_MOTION}: {reason}"));
         }
         self
     }
@@ -125,10 +125,10 @@ impl<'a> RecordFacts<'a> {
             speed_m_s: speed,
             propeller_per_s: propeller_rate,
             particulars: keyed_particulars(&expected.particulars.unwrap_or_default()),
-            coefficients: expected.coefficients.iter().zip(hull.values.iter()).map(coefficient).collect(),
+            coefficients: expected.coefficients.iter().zip(hull.coefficients.iter()).map(coefficient).collect(),
             covariance: matrix_rows(&hull.covariance),
             model_error_moment: RandomYawMoment {
-                deviation_rudder_rad: hull.moment.deviation,
+                sd_rudder_rad: hull.moment.sd_rudder,
                 correlation_s: hull.moment.correlation_time,
             },
             beginning_yaw_rate_rad_s: self.beginning(hull),
@@ -199,8 +199,8 @@ pub fn from_estimate(estimate: &Estimate, facts: &RecordFacts) -> Option<Identif
 /// covariance includes the uncertainty of the noise law.
 pub fn from_analysis(analysis: &Analysis, facts: &RecordFacts) -> IdentifiedShip {
     let members = analysis.plausible_structures().iter().map(member).collect();
-    let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
-    let noise = analysis.noise;
+    let rates = analysis.identification.iter().map(|compared| compared.average_replay.replay.yaw_rate.as_slice());
+    let noise = analysis.heading_noise;
     let ship = facts.with(members, noise, rates);
     match ship.members.first() {
         Some(first) if first.effects.is_empty() && !noise.moment.is_none() => with_likelihood(ship, facts),
@@ -325,7 +325,7 @@ mod tests {
         let mut simulation = Simulation::new(ship, zig_zag);
         simulation.gear = SteeringGear::with_rate(from_deg(2.32));
         simulation.sensors.heading_noise = from_deg(0.1);
-        simulation.disturbances.random_walk = from_deg(walk_deg);
+        simulation.disturbances.moment_random_walk = from_deg(walk_deg);
         simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a trial").trial
     }
 
@@ -358,7 +358,7 @@ mod tests {
             channels: [(Channel::Heading, whole.heading()), (Channel::Rudder, whole.rudder())]
                 .map(|(channel, values)| (channel, values[turning..].to_vec()))
                 .into(),
-            unknown: Vec::new(),
+            unknown_columns: Vec::new(),
         };
         let ship = Particulars { length: 105.0, speed: 8.59 };
         let cut = Trial::new("cut", whole.origin().clone(), columns).expect("a record").with_particulars(ship);
@@ -401,10 +401,10 @@ mod tests {
 
     /// KVLCC2 in a manoeuvre, with a gear of 2.34°/s.
     fn tanker(kind: &str) -> Simulation {
-        let manoeuvre = predict::standard::with_end(&kind.parse().expect("known"), KVLCC2).expect("steered");
+        let manoeuvre = predict::standard::with_predicted_end(&kind.parse().expect("known"), KVLCC2).expect("steered");
         let mut simulation = Simulation::new(SimulatedShip::from_ship(&ship::ships::kvlcc2::full_scale()), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.34));
-        simulation.recording.period = 2.0;
+        simulation.recording.sampling_period = 2.0;
         simulation
     }
 
@@ -431,7 +431,7 @@ mod tests {
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&zig_zags).expect("a fit");
         let facts = RecordFacts::from_trials(&zig_zags).with_motion(None, &[]);
         let ship = from_estimate(&estimate, &facts).expect("a covariance");
-        assert!(facts.no_track.is_none() && !ship.hulls.is_empty());
+        assert!(facts.no_track_reason.is_none() && !ship.hulls.is_empty());
         // The ship begins straight: the yaw rate of replays is an error, less than a twentieth of that in the circle.
         assert!(
             facts.hulls.iter().all(|hull| (1e-6..1e-3).contains(&hull.beginning_yaw_rate_rad_s)),

@@ -1,7 +1,7 @@
 //! Monte-Carlo campaigns: the trials of a scenario are run, their rows stored and summarised.
 //!
-//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. This crate neither plots,
-//! prints nor reads the command line; an [`Observer`] receives progress and warnings.
+//! [`collect::collect`] runs a scenario into a folder, [`collect::collect_in_memory`] without one. This crate neither
+//! plots, prints nor reads the command line; an [`Observer`] receives progress and warnings.
 //!
 //! | to learn about | read |
 //! |---|---|

@@ -10,7 +10,7 @@ use crate::disk;
 use crate::failure::{Failure, OnPath};
 use crate::files::{DESIGN_FILE, MANIFEST_FILE};
 use crate::folder::ResultFolder;
-use crate::scenario::hex;
+use crate::scenario::hex_digits;
 use crate::scenario::{Prose, Scenario, identity};
 
 /// Manifest of a study, the same for any shards in the folder.
@@ -99,7 +99,7 @@ impl Manifest {
     pub fn program_label(&self) -> String {
         let revision = self.git_revision.as_deref().map_or_else(String::new, |revision| format!(" {revision}"));
         let changed = if self.git_dirty { " (changed)" } else { "" };
-        let crates = hex(&Sha256::digest(self.crates.join(",")));
+        let crates = hex_digits(&Sha256::digest(self.crates.join(",")));
         format!("kempf {}{revision}{changed} with crates {}", self.version, &crates[..8])
     }
 
@@ -120,7 +120,7 @@ impl Manifest {
         if self.design_sha256 != other.design_sha256 {
             let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::study_design);
             let designs = design(self).zip(design(other));
-            let changes = designs.map_or_else(Vec::new, |(there, here)| identity::differences(&there, &here));
+            let changes = designs.map_or_else(Vec::new, |(there, here)| identity::document_differences(&there, &here));
             match changes.is_empty() {
                 true => differences.push(
                     "a replayed record, a table of answers or a method of the calling program has changed".to_owned(),

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::observer::Observer;
 use crate::scenario::name::{quoted_beginning, slug};
 use crate::scenario::outside_estimates::{CellAndReplicate, OutsideEstimates};
-use crate::scenario::{Scenario, hex};
+use crate::scenario::{Scenario, hex_digits};
 use crate::shard::TrialId;
 
 /// File next to exported records: their scenario and seed.
@@ -142,7 +142,7 @@ pub fn read(
         answers.insert(None, HashMap::new());
     }
     answers.iter().for_each(|(method, given)| missing(path, scenario, method.as_deref(), given.len() as u64, observer));
-    let sha256 = hex(&Sha256::digest(text.as_bytes()));
+    let sha256 = hex_digits(&Sha256::digest(text.as_bytes()));
     Ok(answers
         .into_iter()
         .map(|(method, by_trial)| (method, OutsideEstimates::new(by_trial, sha256.clone())))

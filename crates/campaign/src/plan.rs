@@ -31,7 +31,7 @@ pub struct TrialPlan<'a> {
     /// State of the stopping rule in the current cell.
     rule: Option<StopCheck>,
     /// Number of trials of every cell so far.
-    pub trials: Vec<u64>,
+    pub cell_trial_counts: Vec<u64>,
 }
 
 /// Indices of the blocks of a shard.
@@ -76,7 +76,7 @@ impl<'a> TrialPlan<'a> {
             cell: 0,
             open: 0..0,
             rule: scenario.stop.as_ref().map(|rule| StopCheck::new(rule, scenario.method_labels())),
-            trials: vec![0; scenario.cells.len()],
+            cell_trial_counts: vec![0; scenario.cells.len()],
         }
     }
 
@@ -121,7 +121,7 @@ impl<'a> TrialPlan<'a> {
             if stored > 0 && self.rule.is_some() {
                 (self.read)(block)?.iter().for_each(|row| self.add(row));
             }
-            self.trials[block.cell] = all.end;
+            self.cell_trial_counts[block.cell] = all.end;
             (self.cell, self.open) = (block.cell, all.start + stored..all.end);
             if !self.open.is_empty() {
                 return Ok(true);
@@ -190,7 +190,7 @@ mod tests {
         let of = |cell: usize, replicates: Range<u64>| replicates.map(move |replicate| TrialId { cell, replicate });
         let expected = of(0, 256..512).chain(of(1, 0..256)).chain(of(1, 266..600));
         assert_eq!(tasks, expected.collect::<Vec<_>>());
-        assert_eq!(plan.trials, [600, 600]);
+        assert_eq!(plan.cell_trial_counts, [600, 600]);
         assert_eq!(plan.peek().expect("nothing is read"), None);
     }
 
@@ -212,6 +212,6 @@ mod tests {
         first.iter().for_each(|task| plan.add(&row(0, task.replicate)));
         // The rule is met after one block of the first cell; that of the second is stored.
         let next = plan.next_trials(1000).expect("readable");
-        assert_eq!((next, plan.trials.as_slice()), (Vec::new(), [256, 256].as_slice()));
+        assert_eq!((next, plan.cell_trial_counts.as_slice()), (Vec::new(), [256, 256].as_slice()));
     }
 }

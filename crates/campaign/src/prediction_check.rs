@@ -32,11 +32,11 @@ impl<'a> PredictionCheck<'a> {
     pub fn new(asked: &'a PredictionSettings, simulation: &Simulation, key: &StreamKey, records: &'a [Trial]) -> Self {
         let closed = simulation.ship.closed_form().map(|ship| ship.K_over_T.sqrt().recip());
         let of_hull = simulation.ship.particulars().map(|particulars| particulars.length / particulars.speed);
-        let timescale = closed.or(of_hull).unwrap_or(TIMESCALE_PERIODS * simulation.recording.period);
+        let timescale = closed.or(of_hull).unwrap_or(TIMESCALE_PERIODS * simulation.recording.sampling_period);
         let other = StreamKey { seed: !key.seed, ..*key };
         let true_figures = |kind: &Manoeuvre| {
             let calm = Simulation {
-                manoeuvre: standard::with_end(kind, timescale)?,
+                manoeuvre: standard::with_predicted_end(kind, timescale)?,
                 sensors: Sensors::default(),
                 ..simulation.clone()
             };

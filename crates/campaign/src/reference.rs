@@ -7,7 +7,7 @@ use simulate::recording::RudderSource;
 use simulate::{Disturbances, Recording, Sensors, SimulatedTrial, Simulation, StreamKey};
 use trial::Trial;
 
-use crate::bound;
+use crate::bound::{CramerRaoBound, cramer_rao_bound};
 use crate::scenario::{SampledSpecification, Specification};
 
 /// Reference for the estimates of a trial: true responses, Cramér–Rao bound and validation manoeuvre.
@@ -17,9 +17,8 @@ pub struct TrialReference {
     pub nearest: Option<FirstOrder>,
     /// First-order base of a response ship with effects; `None` for a first-order ship or a hull.
     pub base: Option<FirstOrder>,
-    /// Cramér–Rao bound of this trial: standard deviations of K (1/s), T (s) and K/T (1/s²), and covariance of the
-    /// relative errors of K and T, %². `None` as in [`bound::cramer_rao_bound`], and without a nearest response.
-    pub bound: Option<([f64; 3], [[f64; 2]; 2])>,
+    /// Cramér–Rao bound of this trial; `None` as in [`cramer_rao_bound`], and without a nearest response.
+    pub cramer_rao_bound: Option<CramerRaoBound>,
     /// Second manoeuvre outside the fit: simulated without disturbance and measurement noise, or a measured record
     /// without heading spikes; `None` without validation.
     pub validation: Option<Trial>,
@@ -36,13 +35,14 @@ impl TrialReference {
         key: &StreamKey,
         traces: bool,
     ) -> Self {
-        let Specification { simulation, validation, truth, base, .. } = &*trial_spec.specification;
+        let Specification { simulation, validation, true_response: truth, base_response: base, .. } =
+            &*trial_spec.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&trial_spec.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
         let base = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading_sd;
         let simulations = || trial_spec.specification.records(key).map(|(simulation, _)| simulation);
-        let bound = nearest.and_then(|nearest| bound::cramer_rao_bound(simulations(), simulated, &nearest));
+        let cramer_rao_bound = nearest.and_then(|nearest| cramer_rao_bound(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         // The expected 2 ln Λ is computed for white heading noise only.
         let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
@@ -51,7 +51,8 @@ impl TrialReference {
             near.mean_square / (sd * sd) * near.rows.div_ceil(heading_every_rows.unwrap_or(1)) as f64
         };
         let expected_2_ln_lambda = near.filter(|_| traces).zip(white).map(ratio);
-        Self { nearest, base, bound, validation: validation.map(|simulated| simulated.trial), expected_2_ln_lambda }
+        let validation = validation.map(|simulated| simulated.trial);
+        Self { nearest, base, cramer_rao_bound, validation, expected_2_ln_lambda }
     }
 }
 

@@ -53,7 +53,7 @@ impl fmt::Display for Shard {
 }
 
 /// Default result folder of a study, `results/NAME`.
-pub fn default_folder(name: &str) -> PathBuf {
+pub fn default_result_folder(name: &str) -> PathBuf {
     Path::new("results").join(name)
 }
 

@@ -32,7 +32,7 @@ const SCALE: f64 = 0.01;
 pub fn fit_groups(scenario: &Scenario, tasks: &[TrialId]) -> Vec<Range<usize>> {
     let fit = |task: &TrialId| {
         let set = scenario.cells[task.cell].record_set()?;
-        Some((task.cell, &set.splits[task.replicate as usize].fitted))
+        Some((task.cell, &set.splits[task.replicate as usize].fitted_indices))
     };
     let share = |task: &TrialId, next: &TrialId| fit(task).is_some() && fit(task) == fit(next);
     let mut start = 0;
@@ -83,10 +83,10 @@ struct SharedTrials<'a> {
 fn run(scenario: &Scenario, set: &RecordSet, tasks: &[TrialId]) -> Vec<TrialOutcome> {
     let split = |task: &TrialId| &set.splits[task.replicate as usize];
     let both = [&set.trials, set.without_spikes()];
-    let of_fit = |all: &[Trial]| split(&tasks[0]).fitted.iter().map(|&place| all[place].clone()).collect();
+    let of_fit = |all: &[Trial]| split(&tasks[0]).fitted_indices.iter().map(|&place| all[place].clone()).collect();
     let [fitted, cleaned]: [Vec<Trial>; 2] = both.map(of_fit);
     let validation_records =
-        tasks.iter().map(|task| split(task).validation.map(|place| both.map(|all| &all[place]))).collect();
+        tasks.iter().map(|task| split(task).validation_index.map(|place| both.map(|all| &all[place]))).collect();
     let trials = SharedTrials { scenario, tasks, fitted: &fitted, cleaned: &cleaned, validation_records };
     let blank = |task: &TrialId| TrialOutcome {
         rows: Vec::new(),
@@ -161,7 +161,13 @@ impl SharedTrials<'_> {
     fn row(&self, trial: usize, fit: &RecordFit, blank: &StudyRow, key: &StreamKey) -> StudyRow {
         let record = self.replayable_validation_record(trial).map(|[_, cleaned]| cleaned);
         let reference = TrialReference { validation: record.cloned(), ..TrialReference::default() };
-        let input = TrialInput { trials: self.cleaned, key, reference: &reference, missing: &[], check: None };
+        let input = TrialInput {
+            trials: self.cleaned,
+            key,
+            reference: &reference,
+            missing_effects: &[],
+            prediction_check: None,
+        };
         let (row, errors) = match &fit.answer {
             FitAnswer::Response(estimate) => {
                 let replayed = |record| {
@@ -172,17 +178,17 @@ impl SharedTrials<'_> {
             FitAnswer::StraightOn => (input.straight_course_row(blank), None),
             FitAnswer::Trace(analysis) => {
                 let before = (0..trial).filter_map(|earlier| self.replayable_validation_record(earlier)).count();
-                let validation = record.and(analysis.validation.get(before)).map(|compared| &compared.after);
+                let validation = record.and(analysis.validation.get(before)).map(|compared| &compared.average_replay);
                 (input.trace_row(blank, analysis, validation), validation.map(|on| on.errors.clone()))
             }
         };
-        let windows = errors.and_then(|errors| errors.restarted_rms(HORIZONS_S[1]));
+        let windows = errors.and_then(|errors| errors.restarted_heading_rmse(HORIZONS_S[1]));
         let predicted =
             self.scenario.predictions.as_ref().map(|asked| match (&self.validation_records[trial], &fit.ship) {
                 (Some([record, _]), Some(ship)) => predicted(ship, record, asked),
                 _ => Box::default(),
             });
-        StudyRow { predicted, validation_60_s_rmse_deg: windows.map(to_deg), ..row }
+        StudyRow { predictions: predicted, validation_60_s_rmse_deg: windows.map(to_deg), ..row }
     }
 }
 

@@ -16,8 +16,8 @@ use crate::engine;
 use crate::scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 use crate::shard::TrialId;
 use crate::stored_figures::{
-    CurveFit, DerivativeCurves, EstimateWithInterval, Intervals, MethodEstimate, MotionCurves, ReferenceIndices,
-    Replays,
+    ConfidenceIntervals, DerivativeCurves, EstimateWithInterval, FourierFitCurves, MethodEstimate, MotionCurves,
+    ReferenceIndices, Replays,
 };
 
 /// First trial of a cell in detail.
@@ -28,13 +28,13 @@ pub struct Showcase {
     /// Trial with its characteristic points; absent if it is not a zig-zag.
     pub trial: Option<ZigZagPlot>,
     /// Fourier fit with its residual.
-    pub fourier_fit: Option<CurveFit>,
+    pub fourier_fit: Option<FourierFitCurves>,
     /// Heading, yaw rate and yaw acceleration of the fits against the truth.
     pub derivatives: Option<DerivativeCurves>,
     /// Replays of the methods.
     pub replays: Replays,
     /// K and T of every method.
-    pub intervals: Intervals,
+    pub intervals: ConfidenceIntervals,
     /// Results of the methods.
     pub methods: Vec<ShowcaseAnswer>,
 }
@@ -57,7 +57,7 @@ pub fn from_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
     let first = TrialId { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;
-    let truth_of_ship = cell.trial_spec(&engine::stream_key(scenario, first)).ok()?.specification.truth;
+    let truth_of_ship = cell.trial_spec(&engine::stream_key(scenario, first)).ok()?.specification.true_response;
     let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
     let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answer = |method: &Method| {
@@ -97,7 +97,7 @@ fn intervals(
     names: &[MethodName],
     truth: Option<&FirstOrder>,
     published: &Published,
-) -> Intervals {
+) -> ConfidenceIntervals {
     let point = |quantity: Quantity| {
         quantity.value.is_finite().then_some(EstimateWithInterval { value: quantity.value, interval: quantity.ci95 })
     };
@@ -106,7 +106,7 @@ fn intervals(
         k_per_s: entry.parameters.and_then(|parameters| point(parameters.k_per_s)),
         t_s: entry.parameters.and_then(|parameters| point(parameters.t_s)),
     };
-    Intervals {
+    ConfidenceIntervals {
         estimates: answers.iter().map(estimate).collect(),
         truth: truth.map(|truth| ReferenceIndices { k_per_s: truth.K(), t_s: truth.T() }),
         published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| ReferenceIndices { k_per_s, t_s }),
@@ -179,11 +179,11 @@ impl<'a> FourierCurve<'a> {
         }
     }
 
-    fn curve_fit(&self) -> CurveFit {
+    fn curve_fit(&self) -> FourierFitCurves {
         let (time, heading) = (self.trial.time(), self.trial.heading());
         let rows = time.iter().zip(heading);
         let residual: Vec<f64> = rows.map(|(t, psi)| psi - self.curve.heading_at(t - self.start())).collect();
-        CurveFit {
+        FourierFitCurves {
             measured: angle_curve_deg(time, heading),
             fitted: self.sampled(|t| self.curve.heading_at(t)),
             origin: Some(self.origin.clone()),

@@ -68,7 +68,14 @@ impl FigureSums {
     ///
     /// Source: delta method, Cramér (1946).
     fn standard_error(&self, figure: StopFigure) -> Option<f64> {
-        let Moments { count: n, mean, second, third, fourth, .. } = self.errors;
+        let Moments {
+            count: n,
+            mean,
+            squared_deviation_sum: second,
+            cubed_deviation_sum: third,
+            fourth_power_sum: fourth,
+            ..
+        } = self.errors;
         let enough = |count: f64| (count >= 20.0).then_some(count);
         let (m2, m3, m4) = (second / n, third / n, fourth / n);
         match figure {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::block_store::{self, BlockStore};
+use crate::block_store::{self, TrialBlockStore};
 use crate::design::Design;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
@@ -15,7 +15,7 @@ use crate::files::{DESIGN_FILE, LEGACY_ROWS_FILE, MANIFEST_FILE, SHOWCASES_FILE,
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::rows::StudyRow;
-use crate::scenario::hex;
+use crate::scenario::hex_digits;
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 
@@ -50,7 +50,7 @@ impl StoredStudy {
         let text = |name: &str| {
             let path = folder.join(name);
             let bytes = disk::read(&path, MAX_TEXT_BYTES).on("read", &path)?;
-            let sha256 = bytes.as_ref().map(|bytes| hex(&Sha256::digest(bytes)));
+            let sha256 = bytes.as_ref().map(|bytes| hex_digits(&Sha256::digest(bytes)));
             match sha256 {
                 None => Err(refused(&path, "it is missing")),
                 Some(sha256) if Some(&sha256) == manifest.sha256.get(name) => {
@@ -87,7 +87,7 @@ impl StoredStudy {
 
     /// Passes every row to `take`, in order. Fails if a row is missing or belongs to another study.
     pub fn for_each_row(&self, take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
-        BlockStore::new(&self.folder, &self.manifest, &self.design).for_each_row(take)
+        TrialBlockStore::new(&self.folder, &self.manifest, &self.design).for_each_row(take)
     }
 }
 
@@ -107,7 +107,7 @@ fn refused(path: &Path, problem: &str) -> Failure {
 /// Fails for rows in the single file of earlier versions.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
     let old = folder.join(LEGACY_ROWS_FILE);
-    if disk::is_there(&old).on("look for", &old)? {
+    if disk::path_exists(&old).on("look for", &old)? {
         return Err(Failure::in_file(
             &old,
             "these rows were stored by an earlier version of this program; remove the folder, or give another with --out, \
@@ -138,7 +138,7 @@ fn described(name: &str, content: &impl Serialize, folder: &ResultFolder) -> Res
 
 /// Writes a file unless its SHA-256 is unchanged, and stores the SHA-256.
 fn write(name: &str, text: &[u8], folder: &ResultFolder, sha256: &mut BTreeMap<String, String>) -> Result<(), Failure> {
-    let digest = hex(&Sha256::digest(text));
+    let digest = hex_digits(&Sha256::digest(text));
     if sha256.insert(name.to_owned(), digest.clone()) == Some(digest) {
         Ok(())
     } else {

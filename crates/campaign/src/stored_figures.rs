@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// Curve fitted to a heading, a Fourier series or any other, with the goodness of fit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct CurveFit {
+#[schemars(rename = "CurveFit")]
+pub struct FourierFitCurves {
     /// Measured heading, deg, against time, s.
     pub measured: PlotCurve,
     /// Fitted heading, deg, against time, s, dense enough for a smooth curve.
@@ -29,7 +30,7 @@ pub struct CurveFit {
     pub fundamental_rad_s: Option<f64>,
 }
 
-impl CurveFit {
+impl FourierFitCurves {
     /// Panels: measured points and fitted curve above, the residual on its own scale below.
     pub fn panels(&self) -> Panels {
         let name = if self.fitted_name.is_empty() { "fitted curve" } else { &self.fitted_name };
@@ -134,7 +135,7 @@ impl Replays {
         upper.extend(self.truth.as_ref().map(truth));
         upper.extend(self.replays.iter().map(|replay| {
             Layer::line(replay.origin.label(), replay.heading.clone(), Pen::from_origin(&replay.origin))
-                .within(HEADING_ROOM)
+                .widening_at_most(HEADING_ROOM)
         }));
         let below = |replay: &ReplayCurves| {
             let size = |size: f64| format!("{}°", number::significant(size, 2));
@@ -148,7 +149,7 @@ impl Replays {
                 ..LayeredPanel::default()
             }
         };
-        let residual = AxisSpec::new("residual [°]", TickRule::Angle).about_zero(RESIDUAL_ROOM);
+        let residual = AxisSpec::new("residual [°]", TickRule::Angle).limited_about_zero(RESIDUAL_ROOM);
         let across = if self.replays.len() < 3 { 1 } else { 2 };
         let multiples = self.replays.iter().map(below).collect();
         let lower = PanelGroup::multiples(across, AxisSpec::time(), PanelRow::zeroed(residual, 0.085), multiples);
@@ -198,7 +199,8 @@ pub struct ReferenceIndices {
 
 /// Estimates of K and T with their 95 % intervals, against the truth and the published value.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Intervals {
+#[schemars(rename = "Intervals")]
+pub struct ConfidenceIntervals {
     /// Estimates, from top to bottom.
     pub estimates: Vec<MethodEstimate>,
     /// Parameters of the simulated trial.
@@ -210,7 +212,7 @@ pub struct Intervals {
 /// Half-width of the axis in multiples of the median distance from the truth; values beyond are outliers.
 const SPREADS: f64 = 7.0;
 
-impl Intervals {
+impl ConfidenceIntervals {
     /// Rows: K and T side by side, one row per method.
     pub fn rows(&self) -> NamedRows {
         type Estimated = fn(&MethodEstimate) -> Option<EstimateWithInterval>;
@@ -227,9 +229,9 @@ impl Intervals {
             let truth = line(CurveOrigin::Truth, self.truth);
             let centre = truth.as_ref().map(|(.., value)| *value);
             RowsColumn {
-                x: AxisSpec::decimal(title).within(SPREADS, centre),
+                x: AxisSpec::decimal(title).limited_around(SPREADS, centre),
                 rows: self.estimates.iter().map(row).collect(),
-                lines: truth.into_iter().chain(line(CurveOrigin::Published, self.published)).collect(),
+                vertical_lines: truth.into_iter().chain(line(CurveOrigin::Published, self.published)).collect(),
                 ..RowsColumn::default()
             }
         };
@@ -269,13 +271,13 @@ mod tests {
 
     #[test]
     fn a_fit_and_its_derivatives_have_symbols_and_units() {
-        let fit = CurveFit {
+        let fit = FourierFitCurves {
             measured: wave(25.0),
             fitted: wave(25.0),
             residual: wave(0.1),
             r_squared: Some(f64::NAN),
             fundamental_rad_s: Some(0.05),
-            ..CurveFit::default()
+            ..FourierFitCurves::default()
         };
         let drawn = svg(fit.panels());
         assert!(drawn.contains("0.05000 rad/s") && drawn.contains("fitted curve") && !drawn.contains("NaN"));
@@ -314,7 +316,7 @@ mod tests {
         };
         let truth = Some(ReferenceIndices { k_per_s: 0.1, t_s: 16.0 });
         let estimates = method_ids().enumerate().map(estimate).collect();
-        let drawn = svg(Intervals { estimates, truth, ..Intervals::default() }.rows());
+        let drawn = svg(ConfidenceIntervals { estimates, truth, ..ConfidenceIntervals::default() }.rows());
         assert!(drawn.contains("<tspan font-style=\"italic\">K</tspan> [1/s]") && drawn.contains("no estimate"));
         assert!(drawn.contains("Error bars: 95 % intervals") && drawn.contains("Arrows: beyond the axis."));
     }

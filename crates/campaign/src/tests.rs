@@ -69,7 +69,7 @@ fn every_declared_number_is_among_them() {
     let documents: Vec<toml::Table> = texts.map(|text| text.parse().expect("it is TOML")).collect();
     const OF_A_TRIAL: [&str; 7] =
         ["manoeuvre", "steering-gear", "helmsman", "approach", "recording", "sensor", "disturbance"];
-    for ScenarioKey { key, unit, .. } in crate::scenario::keys::keys() {
+    for ScenarioKey { key, unit, .. } in crate::scenario::keys::scenario_keys() {
         let is_of_a_trial = key.split('.').next().is_some_and(|part| OF_A_TRIAL.contains(&part));
         if !is_of_a_trial || unit == "table" || unit == "text" || unit.contains(" or ") {
             continue;
@@ -106,7 +106,7 @@ fn is_refused_or_ends(text: &str) {
             Ok(scenario) => {
                 let task = TrialId { cell: 0, replicate: 0 };
                 if let Ok(trial_spec) = scenario.cells[0].trial_spec(&stream_key(&scenario, task)) {
-                    let steps = trial_spec.specification.simulation.cost().steps;
+                    let steps = trial_spec.specification.simulation.cost().max_steps;
                     assert!(steps <= MAX_STEPS as f64, "{steps} steps in\n{changed}");
                 }
                 let rows = TrialRunner::new(&scenario, 0..=0).run(task).rows;
@@ -223,8 +223,8 @@ fn numbers_are_shown_as_they_are_written() {
 /// The keys listed by `study list effects` are exactly those allowed in a scenario.
 #[test]
 fn the_listed_keys_of_an_effect_are_those_it_has() {
-    for effect in ship::effects::all() {
-        let Some(numbers) = effect.scenario_numbers() else { continue };
+    for effect in ship::effects::all_effects() {
+        let Some(numbers) = effect.scenario_keys() else { continue };
         let lines: Vec<String> = numbers.iter().map(|number| format!("{} = 0.3\n", number.key)).collect();
         let text = format!(
             "\n[ship.yukun]\n[[effect]]\n[effect.{}]\n{}[manoeuvre.zig-zag]\nrudder-deg = 10\nheading-deg = 10\n[recording]\n\
@@ -237,6 +237,6 @@ fn the_listed_keys_of_an_effect_are_those_it_has() {
             assert!(message.contains("` is 0.3"), "{message}");
         }
     }
-    let listed = ship::effects::all().iter().filter(|effect| effect.scenario_numbers().is_some()).count();
+    let listed = ship::effects::all_effects().iter().filter(|effect| effect.scenario_keys().is_some()).count();
     assert_eq!(listed, 16, "all forms but those of measured channels");
 }

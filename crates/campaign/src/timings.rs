@@ -63,7 +63,7 @@ impl Timings {
     }
 
     /// Lines of all timed cells and methods.
-    pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = TimingLine> + 'a {
+    pub fn timing_lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = TimingLine> + 'a {
         let names: Vec<&str> = names(design).collect();
         self.times.iter().map(move |(&(cell, place), times)| TimingLine {
             cell,
@@ -71,18 +71,21 @@ impl Timings {
             trials: times.count as u64,
             mean_us: to_the_nanosecond(times.mean),
             sd_us: to_the_nanosecond(times.sd()),
-            shortest_us: to_the_nanosecond(times.smallest),
+            shortest_us: to_the_nanosecond(times.min_value),
         })
     }
 
     /// Durations from lines; methods outside the design are omitted.
-    pub fn from_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
+    pub fn from_timing_lines(lines: impl IntoIterator<Item = TimingLine>, design: &Design) -> Self {
         let times = lines.into_iter().filter_map(|line| {
             let place = names(design).position(|name| name == line.method)?;
             let count = line.trials as f64;
             let second = line.sd_us.powi(2) * (line.trials.saturating_sub(1)) as f64;
             let (mean, smallest) = (line.mean_us, line.shortest_us);
-            Some(((line.cell, place), Moments { count, mean, second, smallest, ..Moments::default() }))
+            Some((
+                (line.cell, place),
+                Moments { count, mean, squared_deviation_sum: second, min_value: smallest, ..Moments::default() },
+            ))
         });
         Self { times: times.collect() }
     }
@@ -91,14 +94,14 @@ impl Timings {
     pub fn to_csv(&self, design: &Design) -> Result<Vec<u8>, Failure> {
         let refuse = |error: &dyn std::fmt::Display| Failure::execution(format!("failed to write timings: {error}"));
         let mut file = csv::Writer::from_writer(Vec::new());
-        self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
+        self.timing_lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
         file.into_inner().map_err(|error| refuse(&error))
     }
 
     /// Durations from the text of `timings.csv`; methods outside the design are omitted. Fails for an invalid text.
     pub fn from_csv(text: &[u8], design: &Design) -> Result<Self, String> {
         let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<TimingLine>, _>>();
-        Ok(Self::from_lines(lines.map_err(|error| error.to_string())?, design))
+        Ok(Self::from_timing_lines(lines.map_err(|error| error.to_string())?, design))
     }
 }
 

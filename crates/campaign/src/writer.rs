@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use crate::block::Block;
-use crate::block_store::BlockStore;
+use crate::block_store::TrialBlockStore;
 use crate::engine::TrialOutcome;
 use crate::failure::Failure;
 use crate::rows::StudyRow;
@@ -20,7 +20,7 @@ const AGE_SHARE: f64 = 0.01;
 
 /// Writer of the current block; it stores a block on completion, and at intervals before.
 pub struct BlockWriter<'a> {
-    store: &'a BlockStore<'a>,
+    store: &'a TrialBlockStore<'a>,
     scenario: &'a Scenario,
     /// Current block; `None` before the first trial.
     block: Option<Block>,
@@ -32,7 +32,7 @@ pub struct BlockWriter<'a> {
 
 impl<'a> BlockWriter<'a> {
     /// Writer of a scenario into a store of its blocks.
-    pub fn new(store: &'a BlockStore<'a>, scenario: &'a Scenario) -> Self {
+    pub fn new(store: &'a TrialBlockStore<'a>, scenario: &'a Scenario) -> Self {
         Self { store, scenario, block: None, rows: Vec::new(), timings: Timings::default(), since: None }
     }
 

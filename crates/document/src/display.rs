@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use crate::fit::CriterionVerdict;
 use crate::noise::MomentKind;
-use crate::scales::Scaling;
-use crate::trace::{Dependence, HeadingErrorKind, Verdict};
+use crate::scales::ScalingVerdict;
+use crate::trace::{Dependence, HeadingErrorKind, TraceVerdict};
 
 macro_rules! display_as_in_files {
     ($($name:ty),+) => {$(
@@ -19,4 +19,4 @@ macro_rules! display_as_in_files {
     )+};
 }
 
-display_as_in_files!(CriterionVerdict, Dependence, HeadingErrorKind, MomentKind, Scaling, Verdict);
+display_as_in_files!(CriterionVerdict, Dependence, HeadingErrorKind, MomentKind, ScalingVerdict, TraceVerdict);

@@ -11,7 +11,7 @@ use crate::imo_form::ImoFormEntry;
 use crate::method::MethodEntry;
 use crate::quantity::Quantity;
 use crate::scales::ScalesEntry;
-use crate::single_records::{Amplitude, SingleRecords};
+use crate::single_records::{SingleRecords, ZigZagAmplitude};
 use crate::trial_particulars::TrialParticularsEntry;
 use crate::warning::{Warning, WarningCode, WarningSource};
 
@@ -171,7 +171,7 @@ pub struct FitDocument {
     pub speed_m_s: Option<f64>,
     /// Amplitude of the zig-zags, to which K and T belong.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub amplitude: Option<Amplitude>,
+    pub amplitude: Option<ZigZagAmplitude>,
     /// Form of MSC/Circ.1053 with the measured entries, if there are any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub form: Vec<ImoFormEntry>,
@@ -302,11 +302,12 @@ pub struct VerdictEntry {
     /// for a rudder that was recorded late.
     pub rudder_delay_s: Option<f64>,
     /// Methods whose heading error is more than ten times the minimum.
-    pub set_apart: Vec<String>,
+    #[serde(rename = "set_apart")]
+    pub far_off_methods: Vec<String>,
     /// Root mean square of the headings about straight lines, deg, if no replay is better than these; then K and T
     /// cannot be used.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub straight_lines_deg: Option<f64>,
+    #[serde(rename = "straight_lines_deg", default, skip_serializing_if = "Option::is_none")]
+    pub straight_lines_rms_deg: Option<f64>,
     /// Output error or maximum likelihood, if its 95 % interval of K or T does not overlap that of the recommended
     /// method, or its replay is in `set_apart`.
     pub contradicted_by: Option<String>,

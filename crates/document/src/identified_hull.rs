@@ -36,7 +36,8 @@ impl IdentifiedCoefficient {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RandomYawMoment {
     /// Standard deviation as the rudder angle with the same moment at approach speed, rad.
-    pub deviation_rudder_rad: f64,
+    #[serde(rename = "deviation_rudder_rad")]
+    pub sd_rudder_rad: f64,
     /// Correlation time, s: the autocorrelation falls to 1/e.
     pub correlation_s: f64,
 }

@@ -88,7 +88,7 @@ impl WeightedStructure {
     /// that is not finite, and if `fitted` has an index beyond the parameters.
     pub fn model(&self) -> Result<ResponseModel, IdentifiedShipError> {
         let effect = |written: &IdentifiedEffect| -> Result<Arc<dyn Effect>, IdentifiedShipError> {
-            effects::find(&written.id, &written.form, &written.constants)
+            effects::find_effect(&written.id, &written.form, &written.constants)
                 .ok_or_else(|| IdentifiedShipError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
         let model = ResponseModel::new(self.effects.iter().map(effect).collect::<Result<_, _>>()?);
@@ -187,7 +187,7 @@ impl IdentifiedShip {
         let mut calm = self.clone();
         calm.noise.moment = RandomMoment::None;
         for hull in &mut calm.hulls {
-            (hull.model_error_moment.deviation_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
+            (hull.model_error_moment.sd_rudder_rad, hull.beginning_yaw_rate_rad_s) = (0.0, 0.0);
             if let Some(place) = hull.coefficients.iter().position(|coefficient| is_wind_coefficient(&coefficient.key))
             {
                 hull.coefficients[place].value = 0.0;

@@ -23,7 +23,8 @@ pub struct IndexEstimates {
 
 /// Heading error on a held-out record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Validation {
+#[schemars(rename = "Validation")]
+pub struct ValidationEntry {
     /// File of the record.
     pub file: String,
     /// Root mean square heading error of the replay, deg; only the initial state is fitted.
@@ -33,7 +34,8 @@ pub struct Validation {
 /// Success of a method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Status {
+#[schemars(rename = "Status")]
+pub enum MethodStatus {
     /// The method gives an estimate.
     Ok,
     /// The method failed; the reason is given.
@@ -50,7 +52,7 @@ pub struct MethodEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
     /// Success of the method.
-    pub status: Status,
+    pub status: MethodStatus,
     /// Reason of a failure.
     pub reason: Option<String>,
     /// Short reason of a failure for tables, such as "not-excited".
@@ -65,7 +67,7 @@ pub struct MethodEntry {
     /// Root mean square heading error of the replay on the fitted records, deg.
     pub heading_rmse_deg: Option<f64>,
     /// Heading errors on held-out records.
-    pub validation: Vec<Validation>,
+    pub validation: Vec<ValidationEntry>,
     /// Noise of the first record, if the method estimates a random moment; SI units and radians.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<HeadingNoise>,

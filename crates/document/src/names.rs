@@ -37,31 +37,31 @@ const UNITS: [(&str, &str); 7] = [
 ];
 
 /// Display name of an effect: its identifier with blanks, unless `EFFECTS` lists another name.
-pub fn effect(id: &str) -> String {
+pub fn effect_name(id: &str) -> String {
     let listed = EFFECTS.iter().find(|(key, _)| *key == id);
     listed.map_or_else(|| with_blanks(id), |(_, name)| (*name).to_owned())
 }
 
 /// Physics of an effect as a sentence without its full stop; `None` for an effect given as a formula.
-pub fn physics(id: &str) -> Option<&'static str> {
+pub fn effect_physics(id: &str) -> Option<&'static str> {
     PHYSICS.iter().find(|(key, _)| *key == id).map(|(_, sentence)| *sentence)
 }
 
 /// Display names of several effects, joined by `between`.
-pub fn effects<S: AsRef<str>>(ids: &[S], between: &str) -> String {
-    ids.iter().map(|id| effect(id.as_ref())).collect::<Vec<_>>().join(between)
+pub fn effect_names<S: AsRef<str>>(ids: &[S], between: &str) -> String {
+    ids.iter().map(|id| effect_name(id.as_ref())).collect::<Vec<_>>().join(between)
 }
 
 /// Display name of an effect in one of its forms, such as `nonlinear damping (r³)`. A form that is part of the name of
 /// the effect is not repeated.
-pub fn effect_form(id: &str, form: &str) -> String {
-    let name = effect(id);
+pub fn effect_form_name(id: &str, form: &str) -> String {
+    let name = effect_name(id);
     if name.contains(form) { name } else { format!("{name} ({form})") }
 }
 
 /// Display name of a record from the stem of its file: `zigzag_20_10_s` becomes `20/10, first to starboard`. A file
 /// name with an extension is not changed.
-pub fn record(stem: &str) -> String {
+pub fn record_name(stem: &str) -> String {
     if stem.contains('.') { stem.to_owned() } else { zigzag(stem).unwrap_or_else(|| with_blanks(stem)) }
 }
 
@@ -99,27 +99,27 @@ mod tests {
 
     #[test]
     fn effects_have_names_without_repetition() {
-        assert_eq!(effect_form("nonlinear_damping", "r³"), "nonlinear damping (r³)");
-        assert_eq!(effect_form("sway_coupling_measured", "measured sway"), "measured sway");
-        assert_eq!(effect_form("rudder_deadband", "dead band"), "rudder dead band");
-        assert_eq!(effect("my_bank"), "my bank");
-        assert_eq!(effects(&["speed_loss", "wave_yaw"], " + "), "speed loss + yaw in waves");
-        for listed in ship::effects::all() {
-            assert!(!effect_form(listed.id(), listed.form()).contains('_'), "{}", listed.id());
+        assert_eq!(effect_form_name("nonlinear_damping", "r³"), "nonlinear damping (r³)");
+        assert_eq!(effect_form_name("sway_coupling_measured", "measured sway"), "measured sway");
+        assert_eq!(effect_form_name("rudder_deadband", "dead band"), "rudder dead band");
+        assert_eq!(effect_name("my_bank"), "my bank");
+        assert_eq!(effect_names(&["speed_loss", "wave_yaw"], " + "), "speed loss + yaw in waves");
+        for listed in ship::effects::all_effects() {
+            assert!(!effect_form_name(listed.id(), listed.form()).contains('_'), "{}", listed.id());
         }
-        assert!(EFFECTS.iter().all(|(id, _)| ship::effects::all().iter().any(|listed| listed.id() == *id)));
-        assert!(ship::effects::all().iter().all(|listed| physics(listed.id()).is_some()));
+        assert!(EFFECTS.iter().all(|(id, _)| ship::effects::all_effects().iter().any(|listed| listed.id() == *id)));
+        assert!(ship::effects::all_effects().iter().all(|listed| effect_physics(listed.id()).is_some()));
     }
 
     #[test]
     fn zig_zags_are_called_by_their_angles() {
-        assert_eq!(record("zigzag_20_10_s"), "20/10, first to starboard");
-        assert_eq!(record("zigzag_10_10_p"), "10/10, first to port");
-        assert_eq!(record("zigzag_35_05"), "35/5");
-        assert_eq!(record("zigzag_13_14_21"), "zigzag 13 14 21");
-        assert_eq!(record("zigzag_20"), "zigzag 20");
-        assert_eq!(record("turning_35"), "turning 35");
-        assert_eq!(record("zigzag_20_10_s.csv"), "zigzag_20_10_s.csv");
+        assert_eq!(record_name("zigzag_20_10_s"), "20/10, first to starboard");
+        assert_eq!(record_name("zigzag_10_10_p"), "10/10, first to port");
+        assert_eq!(record_name("zigzag_35_05"), "35/5");
+        assert_eq!(record_name("zigzag_13_14_21"), "zigzag 13 14 21");
+        assert_eq!(record_name("zigzag_20"), "zigzag 20");
+        assert_eq!(record_name("turning_35"), "turning 35");
+        assert_eq!(record_name("zigzag_20_10_s.csv"), "zigzag_20_10_s.csv");
     }
 
     #[test]

@@ -7,7 +7,8 @@ use crate::quantity::Quantity;
 
 /// Constancy of a dimensionless term across scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-pub enum Scaling {
+#[schemars(rename = "Scaling")]
+pub enum ScalingVerdict {
     /// Equal, and a difference of a quarter would have been significant.
     #[serde(rename = "scales")]
     Scales,
@@ -34,7 +35,7 @@ pub struct ComparedTerm {
     /// Maximum difference between two scales in units of its standard deviation.
     pub difference_sd: Option<f64>,
     /// `scales`, `does not scale` or `cannot be told`.
-    pub verdict: Scaling,
+    pub verdict: ScalingVerdict,
 }
 
 /// Compared terms of one model.

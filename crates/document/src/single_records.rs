@@ -13,13 +13,14 @@ pub struct SingleRecords {
     pub records: Vec<SingleRecord>,
     /// `true` if K and T of all records agree within their standard deviations (χ² at 5 %); `null` if a record has
     /// no standard deviation.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub agree: Option<bool>,
+    #[serde(rename = "agree", default, skip_serializing_if = "Option::is_none")]
+    pub is_consistent: Option<bool>,
 }
 
 /// Amplitude of a zig-zag, or mean amplitude of several. K and T of a first-order response depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Amplitude {
+#[schemars(rename = "Amplitude")]
+pub struct ZigZagAmplitude {
     /// Mean absolute rudder angle between the executes, deg.
     pub rudder_deg: f64,
     /// Mean absolute heading at the peaks from the base course, deg.
@@ -34,7 +35,7 @@ pub struct SingleRecord {
     pub record: String,
     /// Amplitude of rudder and heading.
     #[serde(flatten)]
-    pub amplitude: Amplitude,
+    pub amplitude: ZigZagAmplitude,
     /// K.
     #[serde(rename = "K_per_s")]
     pub k_per_s: Quantity,

@@ -12,7 +12,7 @@ use crate::earlier_trials::EarlierTrials;
 use crate::identified_ship::IdentifiedShip;
 use crate::names;
 use crate::noise::MomentKind;
-use crate::single_records::{Amplitude, SingleRecords};
+use crate::single_records::{SingleRecords, ZigZagAmplitude};
 use crate::warning::Warning;
 
 mod entries;
@@ -20,7 +20,7 @@ mod errors;
 
 pub use entries::{
     ChannelCurveEntry, Dependence, DisturbanceEntry, InclusionStepEntry, Indices, LocatedMomentEntry,
-    MissingMomentEntry, ParameterEntry, PrimeEntry, PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
+    MissingMomentEntry, NondimensionalValue, ParameterEntry, PrimeIndices, RecordEntry, RecordErrors, UnexplainedEntry,
 };
 pub use errors::{HorizonEntry, ModelReplayErrors, RecordReplayErrors, ReplayErrorLists};
 
@@ -33,7 +33,8 @@ const MAX_TITLE_NAMES: usize = 2;
 /// Verdict of a trace.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub enum Verdict {
+#[schemars(rename = "Verdict")]
+pub enum TraceVerdict {
     /// Instrument noise alone explains the records.
     #[default]
     Clean,
@@ -49,7 +50,7 @@ pub enum Verdict {
     Unexplained,
 }
 
-impl Verdict {
+impl TraceVerdict {
     /// All verdicts.
     pub const ALL: [Self; 5] = [Self::Clean, Self::Disturbed, Self::Traced, Self::Located, Self::Unexplained];
 }
@@ -57,7 +58,8 @@ impl Verdict {
 /// Outcome of a candidate, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+#[schemars(rename = "Outcome")]
+pub enum CandidateOutcome {
     /// Named.
     Added,
     /// Member of a named group, or alternative form of a named effect.
@@ -68,7 +70,7 @@ pub enum Outcome {
     NotObservable,
 }
 
-impl Outcome {
+impl CandidateOutcome {
     /// Text of the outcome in reports, such as `not named`.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -130,7 +132,7 @@ pub struct CandidateEntry {
     /// Identifier.
     pub id: String,
     /// Outcome of the best form.
-    pub outcome: Outcome,
+    pub outcome: CandidateOutcome,
     /// Probability that the effect is present in any form and record.
     pub probability: f64,
     /// Probability with the prior odds of all effects multiplied by each of `prior.odds_factors`; empty if no
@@ -158,7 +160,7 @@ pub struct FormEntry {
     /// Record in which it would act; `null` for all.
     pub only: Option<String>,
     /// Outcome.
-    pub outcome: Outcome,
+    pub outcome: CandidateOutcome,
     /// Probability that it is present.
     pub probability: f64,
     /// −2 log evidence ratio.
@@ -190,9 +192,11 @@ pub struct PriorEntry {
     /// Prior probability of an effect.
     pub probability: f64,
     /// Prior probability of a moment that depends on time, in one record.
-    pub probability_of_time: f64,
+    #[serde(rename = "probability_of_time")]
+    pub time_moment_probability: f64,
     /// Minimum probability of a named effect.
-    pub named_from: f64,
+    #[serde(rename = "named_from")]
+    pub min_named_probability: f64,
     /// Factors of the prior odds of all effects together, ascending; one of them is 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub odds_factors: Vec<f64>,
@@ -278,14 +282,15 @@ pub struct ModelEntry {
 
 /// Result of the analysis of a trace, without files and identified ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Document {
+#[schemars(rename = "Document")]
+pub struct AnalysisDocument {
     /// Version of the schema: `trace/4`.
     #[schemars(extend("const" = "trace/4"))]
     pub schema: String,
     /// Result in a few sentences.
     pub headline: String,
     /// `clean`, `disturbed`, `traced`, `located` or `unexplained`.
-    pub verdict: Verdict,
+    pub verdict: TraceVerdict,
     /// K, T and δ_r of the base.
     pub base: Indices,
     /// Named effects, the most probable first.
@@ -317,7 +322,7 @@ pub struct Document {
 pub struct TraceDocument {
     /// Result of the analysis.
     #[serde(flatten)]
-    pub trace: Document,
+    pub trace: AnalysisDocument,
     /// Most informative next trial.
     pub next_trial: String,
     /// Records with the files of their curves, the fitted ones first.
@@ -329,7 +334,7 @@ pub struct TraceDocument {
     pub staircase: Vec<InclusionStepEntry>,
     /// Amplitude of the fitted zig-zags, to which K and T of `base` belong; those of `model` belong to small motions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub amplitude: Option<Amplitude>,
+    pub amplitude: Option<ZigZagAmplitude>,
     /// K and T of every fitted zig-zag alone, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub single_records: Option<SingleRecords>,
@@ -360,7 +365,7 @@ impl TraceDocument {
     /// Title: display names of the fitted records; of more than three records the first two, and the number of others.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);
-        let names: Vec<String> = fitted.map(|record| names::record(&record.name)).collect();
+        let names: Vec<String> = fitted.map(|record| names::record_name(&record.name)).collect();
         match names.len().saturating_sub(MAX_TITLE_NAMES) {
             0 | 1 => names.join(", "),
             more => format!("{} and {more} more", names[..MAX_TITLE_NAMES].join(", ")),
@@ -389,6 +394,6 @@ impl TraceDocument {
 
 impl From<WhitenessTest> for WhitenessEntry {
     fn from(test: WhitenessTest) -> Self {
-        Self { lag1_autocorrelation: test.lag1, whiteness_p: test.p_value }
+        Self { lag1_autocorrelation: test.lag1_autocorrelation, whiteness_p: test.p_value }
     }
 }

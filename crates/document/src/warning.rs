@@ -206,7 +206,7 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match &self.source {
-            WarningSource::Record(name) => write!(f, "{}: {}", names::record(name), self.text),
+            WarningSource::Record(name) => write!(f, "{}: {}", names::record_name(name), self.text),
             WarningSource::File(name) | WarningSource::Method(name) => write!(f, "{name}: {}", self.text),
             WarningSource::Study => f.write_str(&self.text),
         }

@@ -3,7 +3,7 @@
 //!
 //! Source: Higham (2002), Accuracy and Stability of Numerical Algorithms, second edition, chapter 4.
 
-use crate::lanes::{Kernel, run};
+use crate::lanes::{Kernel, run_kernel};
 
 /// Number of partial sums computed in parallel.
 const LANES: usize = 8;
@@ -17,7 +17,7 @@ fn total(lanes: [f64; LANES]) -> f64 {
 
 /// Gram matrix Σ xᵢ xⱼ of `N` columns; columns of different length are truncated to the shortest.
 pub fn gram<const N: usize>(columns: [&[f64]; N]) -> [[f64; N]; N] {
-    run(Gram(columns))
+    run_kernel(Gram(columns))
 }
 
 struct Gram<'a, const N: usize>([&'a [f64]; N]);
@@ -69,8 +69,8 @@ pub struct ColumnProjection {
 
 /// Subtracts from a column, in place, its projection on the constant and on `unit` (length 1, mean 0, as many rows),
 /// and returns the projection.
-pub fn project(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
-    run(Project { unit, column })
+pub fn subtract_projection(unit: &[f64], column: &mut [f64]) -> ColumnProjection {
+    run_kernel(Project { unit, column })
 }
 
 struct Project<'a> {
@@ -183,7 +183,7 @@ mod tests {
         let length = dot(&unit, &unit).sqrt();
         unit.iter_mut().for_each(|x| *x /= length);
         let mut projected = column.clone();
-        let removed = project(&unit, &mut projected);
+        let removed = subtract_projection(&unit, &mut projected);
         assert_relative_eq!(sum(&projected), 0.0, epsilon = 1e-12);
         assert_relative_eq!(dot(&unit, &projected), 0.0, epsilon = 1e-12);
         for (row, (whole, residual)) in column.iter().zip(&projected).enumerate() {

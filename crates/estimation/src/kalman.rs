@@ -25,14 +25,14 @@ const GAIN_TOLERANCE: f64 = 1e-10;
 
 /// Time step of a linear system: transition matrix F and process-noise covariance Q.
 #[derive(Debug, Clone, Copy)]
-pub struct Step<const N: usize> {
+pub struct LinearStep<const N: usize> {
     /// Transition matrix F.
     pub transition: [[f64; N]; N],
     /// Process-noise covariance Q.
     pub process_noise: [[f64; N]; N],
 }
 
-impl<const N: usize> Step<N> {
+impl<const N: usize> LinearStep<N> {
     /// Combined step: this step followed by `next`.
     pub fn followed_by(&self, next: &Self) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl StateSensor {
 
 /// Reading: the time step before it, and its sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reading {
+pub struct SensorReading {
     /// Index of the time step before the reading; [`NO_TIME`] if no time passes.
     step: u32,
     /// Index of the sensor.
@@ -92,7 +92,7 @@ pub struct Reading {
 /// Step of a reading at the time of the reading before it.
 const NO_TIME: u32 = u32::MAX;
 
-impl Reading {
+impl SensorReading {
     /// Reading of a sensor after the time step of index `step`, which is `None` if no time passes.
     ///
     /// # Panics
@@ -117,22 +117,22 @@ impl Reading {
 
 /// Linear system with the sequence of its readings.
 #[derive(Debug, Clone)]
-pub struct System<const N: usize> {
+pub struct LinearSystem<const N: usize> {
     /// Distinct time steps.
-    pub steps: Vec<Step<N>>,
+    pub steps: Vec<LinearStep<N>>,
     /// Distinct sensors.
     pub sensors: Vec<StateSensor>,
     /// Readings in order of time.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<SensorReading>,
     /// Covariance of the state before the first reading.
-    pub initial: [[f64; N]; N],
+    pub initial_covariance: [[f64; N]; N],
 }
 
-impl<const N: usize> System<N> {
+impl<const N: usize> LinearSystem<N> {
     /// System with one reading per row: the first state, or its sum with `second_state`, with the noise variance of
     /// that row. `row_steps` has the index of the time step before every row; the first index is ignored.
     pub fn from_rows(
-        steps: Vec<Step<N>>,
+        steps: Vec<LinearStep<N>>,
         initial: [[f64; N]; N],
         row_steps: &[usize],
         variances: &[f64],
@@ -145,10 +145,10 @@ impl<const N: usize> System<N> {
                 sensors.push(StateSensor { state: 0, second_state, variance });
                 sensors.len() - 1
             });
-            Reading::new((row > 0).then_some(step), sensor)
+            SensorReading::new((row > 0).then_some(step), sensor)
         };
         let readings = row_steps.iter().zip(variances).enumerate().map(reading).collect();
-        Self { steps, sensors, readings, initial }
+        Self { steps, sensors, readings, initial_covariance: initial }
     }
 }
 
@@ -162,8 +162,8 @@ struct Gain<const N: usize> {
 
 /// Kalman filter: the gains of all readings, equal gains stored once.
 #[derive(Debug, Clone)]
-pub struct Filter<const N: usize> {
-    system: System<N>,
+pub struct KalmanFilter<const N: usize> {
+    system: LinearSystem<N>,
     gains: Vec<Gain<N>>,
     /// 1/√S of every gain.
     weights: Vec<f64>,
@@ -173,26 +173,26 @@ pub struct Filter<const N: usize> {
     gain_of: Vec<u32>,
 }
 
-impl<const N: usize> Filter<N> {
+impl<const N: usize> KalmanFilter<N> {
     /// Filter of a system, with the default tolerance for stationary gains.
-    pub fn new(system: System<N>) -> Self {
+    pub fn new(system: LinearSystem<N>) -> Self {
         Self::with_tolerance(system, GAIN_TOLERANCE)
     }
 
     /// Filter whose gains are taken as stationary if their relative change is below `tolerance`.
-    pub fn with_tolerance(system: System<N>, tolerance: f64) -> Self {
+    pub fn with_tolerance(system: LinearSystem<N>, tolerance: f64) -> Self {
         Self::visiting(system, tolerance, |_| ())
     }
 
     /// Filter that passes the predicted covariance of every new gain to `visit`.
-    fn visiting(system: System<N>, tolerance: f64, mut visit: impl FnMut(&[[f64; N]; N])) -> Self {
+    fn visiting(system: LinearSystem<N>, tolerance: f64, mut visit: impl FnMut(&[[f64; N]; N])) -> Self {
         let readings = &system.readings;
         let mut filter = (Vec::<Gain<N>>::new(), Vec::<u32>::with_capacity(readings.len()));
         let (gains, gain_of) = (&mut filter.0, &mut filter.1);
         // Covariances after the last readings, by their position in the period.
-        let mut after = [system.initial; MAX_PERIOD];
+        let mut after = [system.initial_covariance; MAX_PERIOD];
         let mut stationary = 0;
-        let is_upper = system.steps.iter().all(Step::is_upper);
+        let is_upper = system.steps.iter().all(LinearStep::is_upper);
         let mut number = 0;
         while number < readings.len() {
             let reading = &readings[number];

@@ -1,4 +1,4 @@
-//! Vector arithmetic. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] compiles it for every
+//! Vector arithmetic. A [`Kernel`] is a loop over arrays of independent numbers; [`run_kernel`] compiles it for every
 //! instruction set of the processor family and selects the widest one of the machine at run time.
 //!
 //! The results do not depend on the selection, to the last bit: every lane executes the operations of the source in
@@ -12,7 +12,7 @@ pub use pulp::NullaryFnOnce as Kernel;
 
 /// Output of a kernel, run with the widest instruction set of this machine.
 #[inline]
-pub fn run<K: Kernel>(kernel: K) -> K::Output {
+pub fn run_kernel<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
 }
 
@@ -36,7 +36,7 @@ pub fn instruction_set() -> &'static str {
 /// Outputs of a kernel as plain code and with every instruction set of this machine, each with its name.
 pub fn on_every_instruction_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "only one family has several sets"))]
-    let mut outputs = vec![("plain", kernel().call()), ("chosen", run(kernel()))];
+    let mut outputs = vec![("plain", kernel().call()), ("chosen", run_kernel(kernel()))];
     #[cfg(target_arch = "x86_64")]
     {
         use pulp::x86::{V3, V4};

@@ -34,11 +34,11 @@ pub struct LeastSquares {
     /// Unscaled covariance (XᵀX)⁻¹; multiplied by the noise variance it is the covariance of θ.
     pub unscaled_covariance: DMatrix<f64>,
     /// Residual sum of squares.
-    pub rss: f64,
+    pub residual_sum_of_squares: f64,
     /// Number of rows minus number of columns.
     pub degrees_of_freedom: f64,
     /// Ratio of the maximum to the minimum singular value of X with its columns scaled to unit length.
-    pub condition: f64,
+    pub condition_number: f64,
 }
 
 impl LeastSquares {
@@ -81,15 +81,15 @@ impl LeastSquares {
             unscaled_covariance: DMatrix::from_fn(width, width, |i, j| {
                 scaled_covariance[(i, j)] / (scale[i] * scale[j])
             }),
-            rss: residual.norm_squared(),
+            residual_sum_of_squares: residual.norm_squared(),
             degrees_of_freedom: (rows - width) as f64,
-            condition,
+            condition_number: condition,
         })
     }
 
     /// Noise variance rss/(rows − columns); `None` without degrees of freedom.
     pub fn variance(&self) -> Option<f64> {
-        (self.degrees_of_freedom > 0.0).then(|| self.rss / self.degrees_of_freedom)
+        (self.degrees_of_freedom > 0.0).then(|| self.residual_sum_of_squares / self.degrees_of_freedom)
     }
 }
 
@@ -106,7 +106,7 @@ mod tests {
         let fit = LeastSquares::solve(&[&constant, &x], &y, 1e6).expect("well conditioned");
         assert_relative_eq!(fit.parameters[0], 2000.0, max_relative = 1e-10);
         assert_relative_eq!(fit.parameters[1], 3e-6, max_relative = 1e-10);
-        assert!(fit.rss < 1e-20);
+        assert!(fit.residual_sum_of_squares < 1e-20);
     }
 
     #[test]

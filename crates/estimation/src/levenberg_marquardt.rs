@@ -37,13 +37,13 @@ pub struct SearchSettings {
     /// Maximum number of accepted steps.
     pub max_steps: usize,
     /// Initial damping λ, relative to the second derivatives.
-    pub damping: f64,
+    pub initial_damping: f64,
     /// Factor on the damping after a step whose decrease of J is at least `trust_ratio` times the predicted decrease.
-    pub shrink: f64,
+    pub damping_shrink: f64,
     /// Minimum ratio of actual to predicted decrease at which the damping is reduced.
     pub trust_ratio: f64,
     /// Factor on the damping after a step that does not reduce J.
-    pub grow: f64,
+    pub damping_growth: f64,
     /// Lower bound of the damping after an accepted step, and after a rejected step.
     pub min_damping: [f64; 2],
     /// Number of rejected steps in a row that ends a search.
@@ -51,7 +51,7 @@ pub struct SearchSettings {
     /// Predicted decrease of J below which a search has converged.
     pub min_decrease: f64,
     /// Absolute tolerance a and relative tolerance r: a decrease of J is small if it is at most a + r J.
-    pub tolerance: [f64; 2],
+    pub decrease_tolerance: [f64; 2],
     /// Number of steps in a row with a small decrease at which a search has converged.
     pub max_small_steps: usize,
 }
@@ -75,9 +75,9 @@ pub struct SearchResult {
     /// Estimate θ.
     pub estimate: DVector<f64>,
     /// Value of J.
-    pub value: f64,
+    pub objective_value: f64,
     /// Normal equations at θ.
-    pub normal: NormalEquations,
+    pub normal_equations: NormalEquations,
     /// Number of accepted steps.
     pub steps: usize,
     /// Stopping reason.
@@ -161,7 +161,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
     let mut normal = NormalEquations::zeros(unknowns);
     let mut value = problem.linearise(at.as_slice(), &mut normal);
     let mut work = StepWorkspace::new(unknowns);
-    let (mut damping, mut small_steps) = (rules.damping, 0);
+    let (mut damping, mut small_steps) = (rules.initial_damping, 0);
     let mut end = if value.is_finite() { SearchEnd::StepLimit } else { SearchEnd::NotFinite };
     let mut steps = 0;
     'search: while steps < rules.max_steps && end == SearchEnd::StepLimit {
@@ -185,16 +185,19 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
                 let trial = problem.value(next.as_slice());
                 if trial <= value {
                     if value - trial >= rules.trust_ratio * promise {
-                        damping = (damping * rules.shrink).max(rules.min_damping[0]);
+                        damping = (damping * rules.damping_shrink).max(rules.min_damping[0]);
                     }
                     break trial;
                 }
             }
-            damping = (damping * rules.grow).max(rules.min_damping[1]);
+            damping = (damping * rules.damping_growth).max(rules.min_damping[1]);
         };
         std::mem::swap(&mut at, &mut next);
-        small_steps =
-            if value - lower <= rules.tolerance[0] + rules.tolerance[1] * value { small_steps + 1 } else { 0 };
+        small_steps = if value - lower <= rules.decrease_tolerance[0] + rules.decrease_tolerance[1] * value {
+            small_steps + 1
+        } else {
+            0
+        };
         value = problem.linearise(at.as_slice(), &mut normal);
         steps += 1;
         if !value.is_finite() {
@@ -203,7 +206,7 @@ pub fn minimise(problem: &mut impl Objective, start: DVector<f64>, rules: &Searc
             end = SearchEnd::Converged;
         }
     }
-    SearchResult { estimate: at, value, normal, steps, end }
+    SearchResult { estimate: at, objective_value: value, normal_equations: normal, steps, end }
 }
 
 #[cfg(test)]
@@ -213,14 +216,14 @@ mod tests {
 
     const RULES: SearchSettings = SearchSettings {
         max_steps: 50,
-        damping: 1e-3,
-        shrink: 0.2,
+        initial_damping: 1e-3,
+        damping_shrink: 0.2,
         trust_ratio: 0.0,
-        grow: 4.0,
+        damping_growth: 4.0,
         min_damping: [1e-9, 0.0],
         max_rejections: 30,
         min_decrease: 1e-25,
-        tolerance: [0.0, 1e-14],
+        decrease_tolerance: [0.0, 1e-14],
         max_small_steps: 2,
     };
 
@@ -254,7 +257,7 @@ mod tests {
         assert_relative_eq!(minimum.estimate, DVector::from_vec(vec![1.0, 1.0]), epsilon = 1e-8);
         let minimum = minimise(&mut Valley { max_x: 0.5 }, start(), &RULES);
         assert_relative_eq!(minimum.estimate, DVector::from_vec(vec![0.5, 0.25]), epsilon = 1e-8);
-        assert!(minimum.normal.is_bound_active(0, minimum.estimate[0], [-2.0, 0.5]));
+        assert!(minimum.normal_equations.is_bound_active(0, minimum.estimate[0], [-2.0, 0.5]));
     }
 
     #[test]

@@ -53,7 +53,7 @@ impl GappedSeries {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WhitenessTest {
     /// Lag-1 autocorrelation, pooled over records.
-    pub lag1: f64,
+    pub lag1_autocorrelation: f64,
     /// p-value: probability of autocorrelations at least as large in white noise, pooled over records.
     pub p_value: f64,
 }
@@ -77,19 +77,19 @@ pub fn whiteness_test(residuals: &[GappedSeries]) -> WhitenessTest {
         let correlations = autocorrelation(residual, whiteness_lags(n));
         let sum_of_squares: f64 = residual.values.iter().map(|e| e * e).sum();
         square += sum_of_squares;
-        cross += correlations.iter().find(|rho| rho.lag == 1).map_or(0.0, |rho| rho.value) * sum_of_squares;
+        cross += correlations.iter().find(|rho| rho.lag == 1).map_or(0.0, |rho| rho.coefficient) * sum_of_squares;
         let (n, span) = (n as f64, residual.span() as f64);
         statistic += correlations
             .iter()
             .map(|rho| {
                 let share = (span - rho.lag as f64) * n / span;
-                n * (n + 2.0) * rho.value * rho.value / (share * share / rho.pairs as f64)
+                n * (n + 2.0) * rho.coefficient * rho.coefficient / (share * share / rho.pair_count as f64)
             })
             .sum::<f64>();
         freedom += correlations.len() as f64;
     }
     let p_value = if freedom > 0.0 { ChiSquared::new(freedom).map_or(1.0, |chi| chi.sf(statistic)) } else { 1.0 };
-    WhitenessTest { lag1: if square > 0.0 { cross / square } else { 0.0 }, p_value }
+    WhitenessTest { lag1_autocorrelation: if square > 0.0 { cross / square } else { 0.0 }, p_value }
 }
 
 /// Autocorrelation at one lag.
@@ -98,9 +98,9 @@ pub struct Autocorrelation {
     /// Lag, in grid steps.
     pub lag: usize,
     /// Autocorrelation about zero.
-    pub value: f64,
+    pub coefficient: f64,
     /// Number of pairs of values at this lag.
-    pub pairs: usize,
+    pub pair_count: usize,
 }
 
 /// Autocorrelations at lags 1, 2, …, `lags`; a lag without a pair of values is left out.
@@ -124,7 +124,7 @@ pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelatio
             let lag = k + 1;
             let gap_factor = (n * (span - lag as f64)) / (span * pairs[k] as f64);
             let value = if square > 0.0 { cross[k] / square * gap_factor } else { 0.0 };
-            Autocorrelation { lag, value, pairs: pairs[k] }
+            Autocorrelation { lag, coefficient: value, pair_count: pairs[k] }
         })
         .collect()
 }
@@ -135,7 +135,7 @@ pub struct SpectralLine {
     /// Frequency, Hz.
     pub frequency: f64,
     /// Share of the mean square about the mean, from 0 to 1.
-    pub share: f64,
+    pub mean_square_share: f64,
 }
 
 /// Maximum number of grid points per value for which a spectrum is computed.
@@ -155,7 +155,7 @@ pub fn periodogram(series: &GappedSeries) -> Vec<SpectralLine> {
     let frequency = |k: usize| k as f64 / (span as f64 * series.spacing);
     let line = |k: usize, power: f64, total: f64| SpectralLine {
         frequency: frequency(k),
-        share: if total > 0.0 { power / total } else { 0.0 },
+        mean_square_share: if total > 0.0 { power / total } else { 0.0 },
     };
     if n == span {
         let power = power_spectrum(&mut series.values.clone()).split_off(1);
@@ -237,7 +237,10 @@ mod tests {
     }
 
     fn strongest(series: &GappedSeries) -> SpectralLine {
-        periodogram(series).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines")
+        periodogram(series)
+            .into_iter()
+            .max_by(|x, y| x.mean_square_share.total_cmp(&y.mean_square_share))
+            .expect("lines")
     }
 
     /// Patterns of missing headings: none, every third, scattered, a third in one piece, all but every fifth.
@@ -250,7 +253,7 @@ mod tests {
         for (number, pattern) in patterns().into_iter().enumerate() {
             let series = sine(pattern);
             let line = strongest(&series);
-            assert!((line.frequency - 0.05).abs() < 2e-4 && line.share > 0.95, "{number}: {line:?}");
+            assert!((line.frequency - 0.05).abs() < 2e-4 && line.mean_square_share > 0.95, "{number}: {line:?}");
             assert!(whiteness_test(&[series]).p_value < 1e-12, "{number}");
         }
     }
@@ -263,7 +266,7 @@ mod tests {
             for rho in autocorrelation(&series, 40) {
                 let lag = rho.lag as f64 * series.spacing;
                 let full = (600.0 - lag) / 600.0;
-                assert!((rho.value - full * (TAU * lag / 20.0).cos()).abs() < 0.06, "{number}: {rho:?}");
+                assert!((rho.coefficient - full * (TAU * lag / 20.0).cos()).abs() < 0.06, "{number}: {rho:?}");
             }
         }
     }

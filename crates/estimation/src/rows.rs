@@ -4,7 +4,7 @@
 
 use std::array;
 
-use crate::lanes::{Kernel, run};
+use crate::lanes::{Kernel, run_kernel};
 
 /// Number of partial sums computed in parallel.
 const SUMS: usize = 4;
@@ -18,7 +18,7 @@ pub fn orthonormalise<const C: usize, const L: usize, const M: usize>(
     rows: &mut [[f64; C]],
 ) -> ([Vec<f64>; M], [[f64; C]; L]) {
     const { assert!(L > 0 && L + M == C) };
-    run(Orthonormalise { rows })
+    run_kernel(Orthonormalise { rows })
 }
 
 struct Orthonormalise<'a, const C: usize, const L: usize, const M: usize> {

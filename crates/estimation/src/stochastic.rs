@@ -5,10 +5,10 @@
 use nalgebra::DMatrix;
 
 use crate::kalman::whitener::Whitener;
-use crate::kalman::{Filter, MAX_STATES, StateSensor, Step, System};
+use crate::kalman::{KalmanFilter, LinearStep, LinearSystem, MAX_STATES, StateSensor};
 use crate::with_states;
 
-impl<const N: usize> Step<N> {
+impl<const N: usize> LinearStep<N> {
     /// Exact step over `h` seconds of x' = G x + w with white noise w on the last state of G (Van Loan 1978).
     /// `intensity` is the spectral density of w: the variance that it adds to the last state per second. G has 1 to `N`
     /// states; states beyond are zero.
@@ -32,12 +32,12 @@ impl<const N: usize> Step<N> {
     }
 
     /// Step whose process-noise covariance is multiplied by `level`.
-    pub fn scaled(&self, level: f64) -> Self {
+    pub fn with_scaled_noise(&self, level: f64) -> Self {
         Self { process_noise: self.process_noise.map(|row| row.map(|x| level * x)), ..*self }
     }
 }
 
-impl<const N: usize> System<N> {
+impl<const N: usize> LinearSystem<N> {
     /// Readings along a random sample path, without sensor noise; `normal` draws standard normal numbers.
     pub fn sample_path(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
         let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.process_noise)).collect();
@@ -45,7 +45,7 @@ impl<const N: usize> System<N> {
             let numbers: [f64; N] = std::array::from_fn(|_| normal());
             std::array::from_fn(|i| (0..N).map(|j| root[i][j] * numbers[j]).sum())
         };
-        let mut state = draw(&root(&self.initial));
+        let mut state = draw(&root(&self.initial_covariance));
         let read = self.readings.iter().map(|reading| {
             if let Some(step) = reading.step() {
                 let (added, f) = (draw(&roots[step]), &self.steps[step].transition);
@@ -58,7 +58,7 @@ impl<const N: usize> System<N> {
     }
 }
 
-impl System<MAX_STATES> {
+impl LinearSystem<MAX_STATES> {
     /// Whitener of the first `states` states, with the remaining states zero; `tolerance` is the relative change below
     /// which a gain is stationary.
     pub fn whitener(&self, states: usize, tolerance: f64) -> Whitener {
@@ -66,17 +66,17 @@ impl System<MAX_STATES> {
             let first = |wide: &[[f64; MAX_STATES]; MAX_STATES]| -> [[f64; N]; N] {
                 std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j]))
             };
-            let steps = self.steps.iter().map(|step| Step {
+            let steps = self.steps.iter().map(|step| LinearStep {
                 transition: first(&step.transition),
                 process_noise: first(&step.process_noise),
             });
-            let system = System {
+            let system = LinearSystem {
                 steps: steps.collect(),
                 sensors: self.sensors.clone(),
                 readings: self.readings.clone(),
-                initial: first(&self.initial),
+                initial_covariance: first(&self.initial_covariance),
             };
-            Filter::with_tolerance(system, tolerance).into_whitener()
+            KalmanFilter::with_tolerance(system, tolerance).into_whitener()
         })
     }
 }

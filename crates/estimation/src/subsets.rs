@@ -23,9 +23,9 @@ pub struct RemovableTerm {
     /// Indices of the shape parameters of the term among the unknowns.
     pub shape_parameters: Vec<usize>,
     /// Log prior density at neutral amplitudes and fitted shape parameters.
-    pub log_prior: f64,
+    pub log_prior_density: f64,
     /// Log prior odds of inclusion.
-    pub log_odds: f64,
+    pub log_prior_odds: f64,
 }
 
 /// Maximum number of terms whose subsets are all weighted.
@@ -112,7 +112,7 @@ impl SubsetWalk<'_> {
             self.weights[subset] = evidence + log_odds;
             return;
         };
-        self.descend(next + 1, subset | 1 << next, log_prior, log_odds + term.log_odds);
+        self.descend(next + 1, subset | 1 << next, log_prior, log_odds + term.log_prior_odds);
         let [amplitudes, all] = [self.amplitudes.unknowns.len(), self.all.unknowns.len()];
         for &(unknown, distance) in &term.amplitudes {
             self.amplitudes.push(unknown, distance);
@@ -121,7 +121,7 @@ impl SubsetWalk<'_> {
         for &unknown in &term.shape_parameters {
             self.all.push(unknown, 0.0);
         }
-        self.descend(next + 1, subset, log_prior + term.log_prior, log_odds);
+        self.descend(next + 1, subset, log_prior + term.log_prior_density, log_odds);
         self.amplitudes.truncate(amplitudes);
         self.all.truncate(all);
     }
@@ -148,7 +148,7 @@ pub fn conditional_mean(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &
 }
 
 /// Conditions a covariance, in place, on neutral amplitudes of a term.
-pub fn condition_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
+pub fn condition_on_neutral(covariance: &mut DMatrix<f64>, out: &RemovableTerm) {
     for &(unknown, _) in &out.amplitudes {
         let column: DVector<f64> = covariance.column(unknown).into();
         let variance = column[unknown];
@@ -222,8 +222,8 @@ mod tests {
             RemovableTerm {
                 amplitudes: vec![(k + 1, mean[k + 1])],
                 shape_parameters: Vec::new(),
-                log_prior,
-                log_odds: 0.0,
+                log_prior_density: log_prior,
+                log_prior_odds: 0.0,
             }
         }
     }

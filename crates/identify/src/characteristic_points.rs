@@ -166,7 +166,7 @@ impl Identifier for CharacteristicPoints {
         let count = |number: fn(&TrialPoints) -> usize| analysed.iter().map(|trial| number(&trial.points) as f64).sum();
         diagnostics.push(("instants_without_yaw_rate", count(|points| points.zero_rate_points.len())));
         diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
-        diagnostics.push(("half_width_s", analysed[0].points.half_width));
+        diagnostics.push(("half_width_s", analysed[0].points.fit_half_width));
         Ok(Estimate {
             response,
             uncertainty,
@@ -188,7 +188,7 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 
 fn warnings(trials: &[Trial], analysed: &[AnalysedTrial]) -> Vec<Warning> {
     let base_course_warning = |(trial, analysed): (&Trial, &AnalysedTrial)| {
-        let assumed = match analysed.points.base_origin {
+        let assumed = match analysed.points.base_course_origin {
             BaseCourseOrigin::Given | BaseCourseOrigin::Approach => return None,
             BaseCourseOrigin::Zero => "heading 0",
             BaseCourseOrigin::Middle => "the middle of its headings",

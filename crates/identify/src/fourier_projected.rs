@@ -27,7 +27,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::fourier::basis::NestedBases;
 use crate::fourier::fundamental::zero_crossing_period;
-use crate::fourier::regression::{Equations, RegressionForm, white_variance};
+use crate::fourier::regression::{RegressionEquations, RegressionForm, white_variance};
 use crate::fourier::{self, FittedSeries, FourierSeries, Fundamental, MAX_HARMONICS, MAX_TRUSTED_CONDITION};
 use crate::gaps::{gap_free_ranges, gap_threshold};
 use crate::identifier::Identifier;
@@ -132,7 +132,7 @@ pub struct FourierProjected {
 
 /// Heading and rudder of one trial as Fourier curves of one basis, for a plot.
 #[derive(Debug, Clone)]
-pub struct Curves {
+pub struct FourierCurves {
     /// Heading curve.
     pub heading: FittedSeries,
     /// Rudder curve; [`FourierSeries::heading_at`] gives the projected rudder angle, rad.
@@ -183,11 +183,11 @@ impl FourierProjected {
     /// Curves of one trial; time runs from the first observed row.
     ///
     /// Fails as [`Identifier::identify`] does for a record that cannot be fitted.
-    pub fn curves(&self, trial: &Trial) -> Result<Curves, IdentifyError> {
+    pub fn curves(&self, trial: &Trial) -> Result<FourierCurves, IdentifyError> {
         let part = SeriesRows::from_samples(Samples::new(trial, MIN_ROWS)?).averaged(self.max_rows);
         let heading = self.fit(&part)?;
         let rudder = heading.basis.fourier_series(&heading.basis.project(&part.rudder));
-        Ok(Curves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
+        Ok(FourierCurves { heading, rudder, window: [part.time[0], part.time[part.time.len() - 1]] })
     }
 
     fn fit(&self, part: &SeriesRows) -> Result<FittedSeries, IdentifyError> {
@@ -223,7 +223,7 @@ impl FourierProjected {
     }
 
     /// Adds the equations of one trial and returns the variances of the residual.
-    fn add(&self, part: &SeriesRows, fitted: &FittedSeries, equations: &mut Equations) -> ResidualVariance {
+    fn add(&self, part: &SeriesRows, fitted: &FittedSeries, equations: &mut RegressionEquations) -> ResidualVariance {
         let SeriesRows { time, heading, rudder } = part;
         let residual = &fitted.projection.residual;
         let coefficients = 2 * fitted.basis.harmonics() + 1;
@@ -254,7 +254,7 @@ impl Identifier for FourierProjected {
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
-        let mut equations = Equations::default();
+        let mut equations = RegressionEquations::default();
         let (mut fits, mut noises, mut freedom) = (Vec::new(), Vec::new(), 0.0);
         for samples in Samples::from_trials(trials, MIN_ROWS)? {
             let part = SeriesRows::from_samples(samples).averaged(self.max_rows);

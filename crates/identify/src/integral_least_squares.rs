@@ -103,18 +103,18 @@ impl Identifier for IntegralLeastSquares {
         let covariance =
             |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
         let robust_covariance =
-            noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.finite_sample));
+            noise.variance.map(|_| covariance(newey_west_three(&noise.scores) * noise.small_sample_factor));
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust_covariance) {
             (Some(variance), Some(robust)) => {
-                reported_covariance(covariance(noise.influence * variance), robust, noise.lag1, equations)
+                reported_covariance(covariance(noise.influence * variance), robust, noise.lag1_correlation, equations)
             }
             _ => (Uncertainty::None { reason: "no more equations than unknowns" }, None),
         };
         let mut diagnostics = vec![
             ("condition", solution.condition),
             ("equations", equations as f64),
-            ("lag1_autocorrelation", noise.lag1),
+            ("lag1_autocorrelation", noise.lag1_correlation),
             ("stretches_without_gap", pieces.len() as f64),
         ];
         diagnostics.extend(noise.variance.map(|variance| ("heading_noise_deg", to_deg(variance.sqrt()))));

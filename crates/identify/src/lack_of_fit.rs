@@ -15,7 +15,7 @@
 
 use estimation::column::dot;
 use ship::FirstOrder;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use trial::plausibility::count_reversals;
 use trial::{Trial, zigzag};
 
@@ -179,14 +179,14 @@ fn headings(time: &[f64], a: f64, rate: f64, input: impl Fn(usize) -> f64) -> Ve
     let rows = time.len();
     let place = |k: usize| if a < 0.0 { rows - 1 - k } else { k };
     let sign = if a < 0.0 { -1.0 } else { 1.0 };
-    let mut state = State { heading: 0.0, yaw_rate: rate };
+    let mut state = YawState { heading: 0.0, yaw_rate: rate };
     let mut headings = vec![0.0; rows];
-    let mut step = Transition::new(a.abs(), 0.0);
+    let mut step = FirstOrderTransition::new(a.abs(), 0.0);
     for k in 1..rows {
         let (from, to) = (place(k - 1), place(k));
         let h = (time[to] - time[from]).abs();
-        if h != step.h {
-            step = Transition::new(a.abs(), h);
+        if h != step.time_step {
+            step = FirstOrderTransition::new(a.abs(), h);
         }
         let (start, end) = (sign * input(from), sign * input(to));
         state = step.advance(state, start, (end - start) / h);

@@ -169,8 +169,8 @@ impl Identifier for MotionRegression {
             }
         });
         let mut diagnostics = vec![
-            ("r_squared", 1.0 - solution.rss / total_squares(acceleration)),
-            ("condition", solution.condition),
+            ("r_squared", 1.0 - solution.residual_sum_of_squares / total_squares(acceleration)),
+            ("condition", solution.condition_number),
             ("equations", acceleration.len() as f64),
         ];
         let mut warnings = Vec::new();

@@ -38,7 +38,7 @@ use crate::settings::{SettingsError, check_iterations};
 /// `output-error`. No times if more than a tenth of the readings of a record are outliers: the noise then follows
 /// another law. Fails as `output-error` does.
 pub fn spike_times(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
-    Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
+    Ok(PreparedRecords::new(&Settings::default(), trials)?.spike_times())
 }
 
 impl Settings {

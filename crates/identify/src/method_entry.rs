@@ -1,6 +1,6 @@
 //! Document entries for the estimates of methods, as in `fit.json`.
 
-use document::method::{IndexEstimates, MethodEntry, Status};
+use document::method::{IndexEstimates, MethodEntry, MethodStatus};
 use ship::angle::to_deg;
 use trial::Trial;
 
@@ -16,7 +16,7 @@ pub fn success_entry(method: &str, estimate: &Estimate, heading_rmse_deg: Option
     let diagnostics = estimate.diagnostics.iter().filter(|(_, value)| value.is_finite());
     MethodEntry {
         method: method.to_owned(),
-        status: Status::Ok,
+        status: MethodStatus::Ok,
         parameters: Some(IndexEstimates {
             k_per_s: estimate.K(),
             t_s: estimate.T(),

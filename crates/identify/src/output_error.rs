@@ -17,10 +17,10 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
-use crate::likelihood::track::Track;
+use crate::likelihood::track::TrialSignals;
 use crate::profile::{GaussNewtonStep, Profile, invert};
 use crate::robust;
-use crate::samples::checked_track;
+use crate::samples::checked_signals;
 use crate::scan::{self, FitAtInverseT};
 use crate::settings::{SettingsError, check_iterations, require};
 
@@ -140,8 +140,8 @@ struct PolishedMinimum {
 
 impl OutputError {
     /// Values of 1/T to scan, in increasing order: logarithmic for both signs, and zero.
-    fn grid(&self, tracks: &[Track], finest: f64) -> Vec<f64> {
-        let longest = tracks.iter().map(Track::duration).fold(0.0, f64::max);
+    fn grid(&self, trial_signals: &[TrialSignals], finest: f64) -> Vec<f64> {
+        let longest = trial_signals.iter().map(TrialSignals::duration).fold(0.0, f64::max);
         let slowest = MIN_INVERSE_TIME_RECORDS / longest;
         let fastest = self.settings.smallest_time_constant_s.unwrap_or(0.5 * finest).recip().max(10.0 * slowest);
         let decades = (fastest / slowest).log10();
@@ -166,10 +166,11 @@ impl OutputError {
     /// the valley cannot fall below the bar.
     fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<PolishedMinimum> {
         let mut inverse_T = start;
-        let mut rss = profile.evaluate(inverse_T)?;
+        let mut rss = profile.residual_sum_of_squares_at(inverse_T)?;
         for iterations in 1..=goal.iterations {
             let converged = PolishedMinimum { inverse_T, rss, stop: StopReason::Converged, iterations };
-            let GaussNewtonStep { by: mut step, decrease } = profile.gauss_newton_step(inverse_T);
+            let GaussNewtonStep { change: mut step, predicted_decrease: decrease } =
+                profile.gauss_newton_step(inverse_T);
             let hopeless = iterations > MIN_STEPS && rss - DECREASE_MARGIN * decrease > goal.bar;
             if step.abs() <= goal.tolerance * (inverse_T.abs() + resolution) || hopeless {
                 return Some(converged);
@@ -177,11 +178,11 @@ impl OutputError {
             if decrease <= ROUNDING * rss {
                 // The score is more exact than the sum of squares: the step is accepted even if the sum does not
                 // decrease.
-                let last = profile.evaluate(inverse_T + step);
+                let last = profile.residual_sum_of_squares_at(inverse_T + step);
                 return last.map(|rss| PolishedMinimum { inverse_T: inverse_T + step, rss, ..converged });
             }
             let lower = (0..MAX_HALVINGS).find_map(|_| {
-                let lower = profile.evaluate(inverse_T + step).filter(|&lower| lower < rss);
+                let lower = profile.residual_sum_of_squares_at(inverse_T + step).filter(|&lower| lower < rss);
                 if lower.is_none() {
                     step *= 0.5;
                 }
@@ -208,23 +209,24 @@ impl Identifier for OutputError {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let tracks =
-            trials.iter().map(|trial| checked_track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
-        self.fit(tracks, trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min))
+        let trial_signals =
+            trials.iter().map(|trial| checked_signals(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        self.fit(trial_signals, trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min))
     }
 }
 
 impl OutputError {
-    /// Estimate from tracks; `finest` is the minimum sampling period of their records, s, which sets the minimum |T| of
+    /// Estimate from the signals of trials; `finest` is their minimum sampling period, s, which sets the minimum |T| of
     /// the scan unless a setting gives it. Fails as [`OutputError`] does.
-    pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
-        let grid = self.grid(&tracks, finest);
-        let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
+    pub(crate) fn fit(&self, trial_signals: Vec<TrialSignals>, finest: f64) -> Result<Estimate, IdentifyError> {
+        let grid = self.grid(&trial_signals, finest);
+        let resolution =
+            grid[grid.len() - 1].min(1.0 / trial_signals.iter().map(TrialSignals::duration).fold(0.0, f64::max));
         // The scan and the first refinement only locate the valleys, for which a part of the rows suffices; the last
         // refinement uses all rows.
-        let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
+        let thinned: Vec<TrialSignals> = trial_signals.iter().map(|signals| signals.thinned(SCANNED_ROWS)).collect();
         let scan = RangeScan { fits: scan::scan_inverse_T(&thinned, &grid), grid };
-        let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
+        let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(trial_signals));
         let valleys = scan.valleys();
         let mut bar = f64::INFINITY;
         let mut best: Option<PolishedMinimum> = None;
@@ -291,8 +293,8 @@ impl RangeScan {
     /// Estimate at a minimum.
     fn estimate(&self, mut profile: Profile, minimum: PolishedMinimum) -> Result<Estimate, IdentifyError> {
         let PolishedMinimum { inverse_T, rss, stop, iterations } = minimum;
-        profile.evaluate(inverse_T);
-        let (K_over_T, offset) = profile.steering();
+        profile.residual_sum_of_squares_at(inverse_T);
+        let (K_over_T, offset) = profile.K_over_T_and_offset();
         let response = FirstOrder { inverse_T, K_over_T, rudder_bias: offset / K_over_T };
         // A minimum may leave the range during the refinement, or stop at its edge.
         let fastest = self.grid[self.grid.len() - 1];
@@ -302,8 +304,8 @@ impl RangeScan {
             return Err(refused);
         }
         let information = profile.information(inverse_T);
-        let observations = profile.observations();
-        let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trials()) as f64;
+        let observations = profile.heading_count();
+        let freedom = observations as f64 - (SHARED_PARAMETERS + 2 * profile.trial_count()) as f64;
         // The best fit with b > 0 of a ship that turns the wrong way hardly depends on the rudder.
         let (inverse, condition) = invert(&information, MAX_CONDITION).map_err(|condition| self.refusal(condition))?;
         let white = response_covariance(&(inverse * (rss / freedom)), &response, freedom);

@@ -147,7 +147,7 @@ mod tests {
         let columns = Columns {
             time: model.time().to_vec(),
             channels: channels.into_iter().chain([speed]).collect(),
-            unknown: Vec::new(),
+            unknown_columns: Vec::new(),
         };
         let record = Trial::new("model", model.origin().clone(), columns).expect("a record");
         let given = |length, speed| {

@@ -5,16 +5,16 @@
 //! Fisher information and the scores. Work space is allocated once. Sources: variable projection, Golub and Pereyra
 //! (1973); its step, Kaufman (1975).
 
-use estimation::column::{ColumnProjection, dot, gram, project, sum};
+use estimation::column::{ColumnProjection, dot, gram, subtract_projection, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
-use ship::first_order::State;
+use ship::first_order::YawState;
 
-use crate::likelihood::track::{Coefficients, MotionColumns, Track};
+use crate::likelihood::track::{MotionCoefficients, MotionColumns, TrialSignals};
 
 /// Workspace of one trial: columns after projection on the complement of (1, φ₁).
 #[derive(Debug)]
 struct TrialColumns {
-    track: Track,
+    signals: TrialSignals,
     columns: MotionColumns,
     /// Mean and length of φ₁ before it became a unit column.
     homogeneous: (f64, f64),
@@ -34,7 +34,8 @@ pub(crate) struct Profile {
     parts: Vec<TrialColumns>,
     /// b (1/s²) and b δ_r (rad/s²).
     steering: Vector2<f64>,
-    /// Last evaluated 1/T (1/s) and the sum of squares there (rad²), `None` as for [`evaluate`](Self::evaluate).
+    /// Last evaluated 1/T (1/s) and the sum of squares there (rad²), `None` as for
+    /// [`residual_sum_of_squares_at`](Self::residual_sum_of_squares_at).
     last: Option<(f64, Option<f64>)>,
     /// Number of evaluations.
     pub evaluations: usize,
@@ -44,19 +45,19 @@ pub(crate) struct Profile {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GaussNewtonStep {
     /// Change of 1/T, 1/s.
-    pub by: f64,
+    pub change: f64,
     /// Predicted decrease of the sum of squares, rad².
-    pub decrease: f64,
+    pub predicted_decrease: f64,
 }
 
 impl Profile {
-    pub fn new(tracks: Vec<Track>) -> Self {
-        let parts = tracks
+    pub fn new(trial_signals: Vec<TrialSignals>) -> Self {
+        let parts = trial_signals
             .into_iter()
-            .map(|track| {
-                let rows = track.len();
+            .map(|signals| {
+                let rows = signals.len();
                 TrialColumns {
-                    track,
+                    signals,
                     columns: MotionColumns::default(),
                     homogeneous: (0.0, 0.0),
                     removed: [ColumnProjection::default(); 3],
@@ -70,7 +71,7 @@ impl Profile {
     }
 
     /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` if the columns are dependent or b ≤ 0.
-    pub fn evaluate(&mut self, inverse_T: f64) -> Option<f64> {
+    pub fn residual_sum_of_squares_at(&mut self, inverse_T: f64) -> Option<f64> {
         match self.last {
             Some((point, rss)) if point == inverse_T => rss,
             _ => {
@@ -113,7 +114,7 @@ impl Profile {
         let explained = solve2(&products, &cross).map_or(0.0, |share| share.dot(&cross));
         let curvature = information[(0, 0)] - explained;
         let by = if curvature > 0.0 { score / curvature } else { 0.0 };
-        GaussNewtonStep { by, decrease: by * score }
+        GaussNewtonStep { change: by, predicted_decrease: by * score }
     }
 
     /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the last evaluated point; times 1/σ² it is the Fisher
@@ -144,24 +145,24 @@ impl Profile {
     }
 
     /// b = K/T (1/s²) and b δ_r (rad/s²) of the last evaluated point.
-    pub fn steering(&self) -> (f64, f64) {
+    pub fn K_over_T_and_offset(&self) -> (f64, f64) {
         (self.steering[0], self.steering[1])
     }
 
     /// Number of trials.
-    pub fn trials(&self) -> usize {
+    pub fn trial_count(&self) -> usize {
         self.parts.len()
     }
 
     /// Number of observed headings of all trials.
-    pub fn observations(&self) -> usize {
+    pub fn heading_count(&self) -> usize {
         self.parts.iter().map(|part| part.heading.len()).sum()
     }
 
     /// Σ(ψ − mean)² over all trials, rad².
     pub fn total_sum_of_squares(&self) -> f64 {
         let trial_squares = |part: &TrialColumns| {
-            let heading = &part.track.heading;
+            let heading = &part.signals.heading;
             let mean = sum(heading) / heading.len() as f64;
             heading.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>()
         };
@@ -171,7 +172,7 @@ impl Profile {
 
 impl TrialColumns {
     fn project_columns(&mut self, inverse_T: f64) {
-        self.track.fill_columns(inverse_T, &mut self.columns);
+        self.signals.fill_columns(inverse_T, &mut self.columns);
         let MotionColumns { homogeneous, rudder, constant, .. } = &mut self.columns;
         let mean = sum(homogeneous) / homogeneous.len() as f64;
         homogeneous.iter_mut().for_each(|x| *x -= mean);
@@ -180,31 +181,31 @@ impl TrialColumns {
             homogeneous.iter_mut().for_each(|x| *x /= length);
         }
         self.homogeneous = (mean, length);
-        self.removed[0] = project(homogeneous, rudder);
-        self.removed[1] = project(homogeneous, constant);
+        self.removed[0] = subtract_projection(homogeneous, rudder);
+        self.removed[1] = subtract_projection(homogeneous, constant);
     }
 
     fn project_heading(&mut self) {
-        self.heading.copy_from_slice(&self.track.heading);
-        self.removed[2] = project(&self.columns.homogeneous, &mut self.heading);
+        self.heading.copy_from_slice(&self.signals.heading);
+        self.removed[2] = subtract_projection(&self.columns.homogeneous, &mut self.heading);
     }
 
     /// Information XᵀX of (1/T, b, b δ_r), with the columns ∂ψ/∂a, G and H projected off the initial state.
-    fn information(&mut self, inverse_T: f64, coefficients: &Coefficients) -> Matrix3<f64> {
-        self.track.sensitivity(inverse_T, coefficients, &mut self.sensitivity);
-        project(&self.columns.homogeneous, &mut self.sensitivity);
+    fn information(&mut self, inverse_T: f64, coefficients: &MotionCoefficients) -> Matrix3<f64> {
+        self.signals.sensitivity(inverse_T, coefficients, &mut self.sensitivity);
+        subtract_projection(&self.columns.homogeneous, &mut self.sensitivity);
         Matrix3::from(gram([&self.sensitivity, &self.columns.rudder, &self.columns.constant]))
     }
 
-    /// Coefficients of the track for given steering: the projected-out components give the anchor.
-    fn coefficients(&self, K_over_T: f64, offset: f64) -> Coefficients {
+    /// Coefficients of the trial for given steering: the projected-out components give the anchor.
+    fn coefficients(&self, K_over_T: f64, offset: f64) -> MotionCoefficients {
         let [rudder, constant, heading] = self.removed;
         let (mean, length) = self.homogeneous;
         // φ₁ = mean + length · unit.
         let along = heading.component - K_over_T * rudder.component - offset * constant.component;
         let yaw_rate = if length > 0.0 { along / length } else { 0.0 };
         let level = heading.mean - K_over_T * rudder.mean - offset * constant.mean;
-        Coefficients { anchor: State { heading: level - yaw_rate * mean, yaw_rate }, K_over_T, offset }
+        MotionCoefficients { anchor: YawState { heading: level - yaw_rate * mean, yaw_rate }, K_over_T, offset }
     }
 }
 

@@ -6,10 +6,10 @@
 
 use estimation::column::{dot, sum};
 use ship::FirstOrder;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use trial::Trial;
 
-use crate::likelihood::track::{Coefficients, MotionColumns, Track};
+use crate::likelihood::track::{MotionCoefficients, MotionColumns, TrialSignals};
 
 /// Maximum condition number for the fit of an initial yaw rate; above it the yaw rate is zero.
 const MAX_CONDITION: f64 = 1e9;
@@ -49,12 +49,12 @@ impl Replay {
 /// `None` if the replay is not finite, as for a response with infinite or undefined parameters.
 pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
-    let track = Track::new(trial);
+    let signals = TrialSignals::new(trial);
     let mut columns = MotionColumns::default();
-    track.fill_columns(a, &mut columns);
-    let mut coefficients = Coefficients::from_response(response);
+    signals.fill_columns(a, &mut columns);
+    let mut coefficients = MotionCoefficients::from_response(response);
     let forced = columns.rudder.iter().zip(&columns.constant);
-    let free: Vec<f64> = track
+    let free: Vec<f64> = signals
         .heading
         .iter()
         .zip(forced)
@@ -64,16 +64,16 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
         return None;
     }
     coefficients.anchor = best_initial_state(&free, &columns.homogeneous);
-    let states = track.simulate(a, &coefficients);
+    let states = signals.simulate(a, &coefficients);
     let mut residual = vec![f64::NAN; states.len()];
-    for (&row, &measured) in track.heading_rows.iter().zip(&track.heading) {
+    for (&row, &measured) in signals.heading_rows.iter().zip(&signals.heading) {
         residual[row] = measured - states[row].heading;
         if !residual[row].is_finite() {
             return None;
         }
     }
     let replay = Replay {
-        time: track.time.clone(),
+        time: signals.time.clone(),
         heading: states.iter().map(|state| state.heading).collect(),
         yaw_rate: states.iter().map(|state| state.yaw_rate).collect(),
         residual,
@@ -100,7 +100,7 @@ pub fn pooled_rms(replays: &[Replay]) -> f64 {
 
 /// Heading (rad) and yaw rate (rad/s) at the anchor whose free motion, along 1 and φ₁, is nearest to `free`, the
 /// heading minus the response to rudder and bias.
-pub(crate) fn best_initial_state(free: &[f64], homogeneous: &[f64]) -> State {
+pub(crate) fn best_initial_state(free: &[f64], homogeneous: &[f64]) -> YawState {
     let rows = free.len() as f64;
     let (level, mean) = (sum(free) / rows, sum(homogeneous) / rows);
     let square = dot(homogeneous, homogeneous);
@@ -110,10 +110,10 @@ pub(crate) fn best_initial_state(free: &[f64], homogeneous: &[f64]) -> State {
     let is_independent = spread.is_finite() && spread * MAX_CONDITION.powi(2) > 4.0 * square;
     if !is_independent {
         // The transient of the initial yaw rate decays within a sample: only the heading can be fitted.
-        return State { heading: level, yaw_rate: 0.0 };
+        return YawState { heading: level, yaw_rate: 0.0 };
     }
     let yaw_rate = dot(&centred, free) / spread;
-    State { heading: level - yaw_rate * mean, yaw_rate }
+    YawState { heading: level - yaw_rate * mean, yaw_rate }
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use crate::likelihood::Track;
+use crate::likelihood::TrialSignals;
 use estimation::column::extremes;
 use ship::angle::to_deg;
-use trial::{Corner, Trial};
+use trial::{RudderCorner, Trial};
 
 use crate::error::IdentifyError;
 
@@ -37,26 +37,26 @@ pub struct Samples {
 impl Samples {
     /// Samples of the observed rows of a trial.
     ///
-    /// Fails with [`IdentifyError::TooFewSamples`] if there are fewer than `needed` finite headings, with
+    /// Fails with [`IdentifyError::TooFewSamples`] if there are fewer than `needed_headings` finite headings, with
     /// [`IdentifyError::OutOfRange`] if the time from the first to the last of them is not within 1e-6 and 1e9 s or an
     /// angle exceeds 1e6 rad, and with [`IdentifyError::NotExcited`] if rudder or heading vary by less than half a
     /// degree.
-    pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
-        check(trial, needed)?;
+    pub fn new(trial: &Trial, needed_headings: usize) -> Result<Self, IdentifyError> {
+        check(trial, needed_headings)?;
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
         let first = trial.observed_rows().next().unwrap_or(0);
         let rows = trial.len() - first;
         let (mut once, mut twice) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
         once.push(0.0);
         twice.push(0.0);
-        let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row >= first);
+        let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row_before >= first);
         let mut corner = corners.next();
         // Integration starts at the first observed row.
         let (mut integral, mut double) = (0.0, 0.0);
         for row in first + 1..trial.len() {
             let h = t[row] - t[row - 1];
             match corner {
-                Some(&Corner { row: before_row, time, rate_before: before, rate_after: after })
+                Some(&RudderCorner { row_before: before_row, time, rate_before: before, rate_after: after })
                     if before_row + 1 == row =>
                 {
                     let (start, u, change) = (delta[row - 1], t[row] - time, after - before);
@@ -85,11 +85,11 @@ impl Samples {
     }
 
     /// Samples of every trial, or the first error.
-    pub fn from_trials(trials: &[Trial], needed: usize) -> Result<Vec<Self>, IdentifyError> {
+    pub fn from_trials(trials: &[Trial], needed_headings: usize) -> Result<Vec<Self>, IdentifyError> {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        trials.iter().map(|trial| Self::new(trial, needed)).collect()
+        trials.iter().map(|trial| Self::new(trial, needed_headings)).collect()
     }
 
     /// Number of rows.
@@ -98,20 +98,20 @@ impl Samples {
     }
 }
 
-/// Track of a trial that is excited and has `needed` headings; fails as [`Samples::new`] does.
-pub(crate) fn checked_track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError> {
-    check(trial, needed)?;
-    Ok(Track::new(trial))
+/// Signals of a trial that is excited and has `needed_headings` headings; fails as [`Samples::new`] does.
+pub(crate) fn checked_signals(trial: &Trial, needed_headings: usize) -> Result<TrialSignals, IdentifyError> {
+    check(trial, needed_headings)?;
+    Ok(TrialSignals::new(trial))
 }
 
 /// Checks the requirements of every method on a trial; fails as [`Samples::new`] does.
-pub(crate) fn check(trial: &Trial, needed: usize) -> Result<(), IdentifyError> {
+pub(crate) fn check(trial: &Trial, needed_headings: usize) -> Result<(), IdentifyError> {
     let (time, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
     let count = psi.iter().filter(|psi| psi.is_finite()).count();
     let first = trial.observed_rows().next().unwrap_or(0);
     let last = psi.iter().rposition(|psi| psi.is_finite()).unwrap_or(0);
-    if count < needed {
-        return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, count });
+    if count < needed_headings {
+        return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed: needed_headings, count });
     }
     let largest = |(lo, hi): (f64, f64)| hi.max(-lo);
     let range_deg = |(lo, hi): (f64, f64)| to_deg(hi - lo);

@@ -6,9 +6,9 @@
 
 use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
-use ship::first_order::Transition;
+use ship::first_order::FirstOrderTransition;
 
-use crate::likelihood::track::{Track, TrackStep, durations_differ, is_backward};
+use crate::likelihood::track::{SignalStep, TrialSignals, durations_differ, is_backward};
 use crate::profile::solve2;
 
 /// Number of values of 1/T in parallel.
@@ -27,10 +27,10 @@ pub(crate) struct FitAtInverseT {
 
 /// Best fit for every value of `inverse_T` (1/s), in increasing order; `None` if the columns are dependent.
 ///
-/// Every row of the tracks has to be observed, and their rudder to have no corners between rows, as in
-/// [thinned](Track::thinned) tracks.
-pub(crate) fn scan_inverse_T(tracks: &[Track], inverse_T: &[f64]) -> Vec<Option<FitAtInverseT>> {
-    let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
+/// Every row of the signals has to be observed, and their rudder to have no corners between rows, as in
+/// [thinned](TrialSignals::thinned) signals.
+pub(crate) fn scan_inverse_T(trial_signals: &[TrialSignals], inverse_T: &[f64]) -> Vec<Option<FitAtInverseT>> {
+    let centred: Vec<Vec<f64>> = trial_signals.iter().map(|signals| centred(&signals.heading)).collect();
     let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
     let mut fits = Vec::with_capacity(inverse_T.len());
     // The columns of one block have their anchors at the same end of the record.
@@ -38,8 +38,8 @@ pub(crate) fn scan_inverse_T(tracks: &[Track], inverse_T: &[f64]) -> Vec<Option<
         for block in same_side.chunks(LANES) {
             let values: Lanes = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
             let mut products = [Products::default(); LANES];
-            for (track, heading) in tracks.iter().zip(&centred) {
-                let trial_products = estimation::lanes::run(Sweep { track, heading, inverse_T: &values });
+            for (signals, heading) in trial_signals.iter().zip(&centred) {
+                let trial_products = estimation::lanes::run_kernel(Sweep { signals, heading, inverse_T: &values });
                 products.iter_mut().zip(trial_products).for_each(|(sum, term)| sum.add(&term));
             }
             fits.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
@@ -84,9 +84,9 @@ impl Products {
     }
 }
 
-/// Pass over a track with its heading minus the mean; 1/T has one sign in all lanes.
+/// Pass over one trial with its heading minus the mean; 1/T has one sign in all lanes.
 struct Sweep<'a> {
-    track: &'a Track,
+    signals: &'a TrialSignals,
     heading: &'a [f64],
     inverse_T: &'a Lanes,
 }
@@ -129,23 +129,23 @@ impl Sums {
 impl estimation::lanes::Kernel for Sweep<'_> {
     type Output = [Products; LANES];
 
-    /// Sums over the rows of a track, by the recursions of [`Track::fill_columns`] in every lane. The anchor row has
-    /// only zeros and is left out.
+    /// Sums over the rows of a trial, by the recursions of [`TrialSignals::fill_columns`] in every lane. The anchor row
+    /// has only zeros and is left out.
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let Self { track, heading, inverse_T } = self;
+        let Self { signals, heading, inverse_T } = self;
         let mut sums = Sums::default();
         let (mut f, mut g, mut h) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         let (mut f_rate, mut g_rate, mut h_rate) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
         let mut duration = 0.0;
         let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let rudder = &track.rudder;
+        let rudder = &signals.rudder;
         let backward = is_backward(inverse_T[0]);
-        for TrackStep { from_row, to_row, duration: step, rudder_rate: rate, .. } in track.steps(backward) {
+        for SignalStep { from_row, to_row, duration: step, rudder_rate: rate, .. } in signals.steps(backward) {
             if durations_differ(duration, step) {
                 duration = step;
                 for lane in 0..LANES {
-                    let transition = Transition::new(inverse_T[lane], step);
+                    let transition = FirstOrderTransition::new(inverse_T[lane], step);
                     (decay[lane], phi1[lane]) = (transition.decay, transition.phi1);
                     (phi2[lane], phi3[lane]) = (transition.phi2, transition.phi3);
                 }
@@ -186,23 +186,23 @@ mod tests {
     use crate::testing::Case;
     use approx::assert_relative_eq;
 
-    fn track(case: Case) -> Track {
-        Track::new(&case.trial()).thinned(200)
+    fn signals(case: Case) -> TrialSignals {
+        TrialSignals::new(&case.trial()).thinned(200)
     }
 
     #[test]
     fn the_scan_is_the_profile() {
-        let tracks = [
-            track(Case { noise_deg: 0.5, ..Case::default() }),
-            track(Case { noise_deg: 0.2, rudder_deg: 20.0, seed: 2, ..Case::default() }),
+        let trial_signals = [
+            signals(Case { noise_deg: 0.5, ..Case::default() }),
+            signals(Case { noise_deg: 0.2, rudder_deg: 20.0, seed: 2, ..Case::default() }),
         ];
         let grid: Vec<f64> = (-15..=15).map(|k| 0.01 * f64::from(k)).collect();
-        let mut profile = Profile::new(tracks.to_vec());
-        for (&a, fit) in grid.iter().zip(scan_inverse_T(&tracks, &grid)) {
+        let mut profile = Profile::new(trial_signals.to_vec());
+        for (&a, fit) in grid.iter().zip(scan_inverse_T(&trial_signals, &grid)) {
             let fit = fit.expect("the columns are independent");
-            if let Some(rss) = profile.evaluate(a) {
+            if let Some(rss) = profile.residual_sum_of_squares_at(a) {
                 assert_relative_eq!(fit.rss, rss, max_relative = 1e-8);
-                assert_relative_eq!(fit.K_over_T, profile.steering().0, max_relative = 1e-7);
+                assert_relative_eq!(fit.K_over_T, profile.K_over_T_and_offset().0, max_relative = 1e-7);
             } else {
                 assert!(fit.K_over_T <= 0.0);
             }
@@ -211,12 +211,12 @@ mod tests {
 
     #[test]
     fn every_instruction_set_gives_the_same_bits() {
-        let track = track(Case { noise_deg: 0.5, ..Case::default() });
-        let heading = centred(&track.heading);
+        let signals = signals(Case { noise_deg: 0.5, ..Case::default() });
+        let heading = centred(&signals.heading);
         for sign in [1.0, -1.0] {
             let inverse_T = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
             let results = estimation::lanes::on_every_instruction_set(|| Sweep {
-                track: &track,
+                signals: &signals,
                 heading: &heading,
                 inverse_T: &inverse_T,
             });

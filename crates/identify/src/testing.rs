@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::from_deg;
-use ship::first_order::{FirstOrder, State, Transition};
+use ship::first_order::{FirstOrder, FirstOrderTransition, YawState};
 use statrs::distribution::{ContinuousCDF, Normal};
 use trial::{Channel, Columns, RecordOrigin, Trial};
 
@@ -85,7 +85,7 @@ pub struct Truth {
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     t: f64,
-    state: State,
+    state: YawState,
     rudder: f64,
     slope: f64,
 }
@@ -95,9 +95,13 @@ impl Piece {
         self.rudder + self.slope * h
     }
 
-    fn state(&self, ship: &FirstOrder, h: f64) -> State {
+    fn state(&self, ship: &FirstOrder, h: f64) -> YawState {
         let b = ship.K_over_T;
-        Transition::new(ship.inverse_T, h).advance(self.state, b * (self.rudder + ship.rudder_bias), b * self.slope)
+        FirstOrderTransition::new(ship.inverse_T, h).advance(
+            self.state,
+            b * (self.rudder + ship.rudder_bias),
+            b * self.slope,
+        )
     }
 }
 
@@ -165,7 +169,7 @@ impl Case {
         let mut side = angle.signum();
         let mut executes = vec![0.0];
         let mut pieces: Vec<Piece> = Vec::new();
-        let mut now = Piece { t: 0.0, state: State::default(), rudder: 0.0, slope: side * rate };
+        let mut now = Piece { t: 0.0, state: YawState::default(), rudder: 0.0, slope: side * rate };
         let last = |executes: &[f64]| match self.start {
             Start::At(t) => t + duration,
             Start::Rest | Start::Mid => executes.get(1).map_or(f64::INFINITY, |t| t + 1.2 + duration),
@@ -214,19 +218,21 @@ pub fn record_with_gyro(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>, yaw
 
 fn from_channels(name: &str, time: Vec<f64>, channels: BTreeMap<Channel, Vec<f64>>) -> Trial {
     let origin = RecordOrigin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
-    Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
+    Trial::new(name, origin, Columns { time, channels, unknown_columns: Vec::new() })
+        .expect("a test builds valid records")
 }
 
 /// Heading, rad, at every time of `time` (s), of `ship` steered by `rudder` (rad) from the state `start`. It is exact
 /// if the rudder is linear between the rows and the detected corners of the rudder signal.
-pub fn steered(ship: &FirstOrder, start: State, time: &[f64], rudder: &[f64]) -> Vec<f64> {
+pub fn steered(ship: &FirstOrder, start: YawState, time: &[f64], rudder: &[f64]) -> Vec<f64> {
     let blank = record("steering", time.to_vec(), vec![0.0; time.len()], rudder.to_vec());
     let path = blank.rudder_signal();
     let b = ship.K_over_T;
     let (mut state, mut heading, mut at) = (start, vec![start.heading], 1);
     for (t, delta) in path.times().windows(2).zip(path.values().windows(2)) {
         let (h, slope) = (t[1] - t[0], (delta[1] - delta[0]) / (t[1] - t[0]));
-        state = Transition::new(ship.inverse_T, h).advance(state, b * (delta[0] + ship.rudder_bias), b * slope);
+        state =
+            FirstOrderTransition::new(ship.inverse_T, h).advance(state, b * (delta[0] + ship.rudder_bias), b * slope);
         if t[1] == time[at] {
             heading.push(state.heading);
             at += 1;

@@ -53,7 +53,7 @@ fn disbelief(verdict: &VerdictEntry, entries: &[MethodEntry], scatter_deg: Optio
     let failed = |id: &&str| entries.iter().any(|entry| entry.id() == *id && entry.parameters.is_none());
     let is_usual = REFERENCE_METHODS.contains(&taken.id()) || !REFERENCE_METHODS.iter().all(failed);
     let is_unstable = t.ci95.is_some_and(|[_, high]| high < 0.0);
-    if let Some(straight) = verdict.straight_lines_deg {
+    if let Some(straight) = verdict.straight_lines_rms_deg {
         return Some(format!(
             "the best replay ({}) misses the headings by {}° (rms), and a straight line without any rudder only by {}°",
             verdict.method,
@@ -113,8 +113,8 @@ fn taken(recommendation: &Recommendation, entries: &[MethodEntry], straight: Opt
         with_ship_terms_deg: degrees(|lack| lack.rms_with_ship_terms),
         noise_deg: degrees(|lack| lack.noise_sd),
         rudder_delay_s: recommendation.lack_of_fit.and_then(|lack| lack.rudder_delay()),
-        set_apart: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
-        straight_lines_deg,
+        far_off_methods: answered().filter(is_far).map(|entry| entry.method.clone()).collect(),
+        straight_lines_rms_deg: straight_lines_deg,
         contradicted_by: answered().find(contradicts).map(|entry| entry.method.clone()),
     })
 }
@@ -129,7 +129,7 @@ fn are_apart(a: &MethodEntry, b: &MethodEntry) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use document::method::{IndexEstimates, Status};
+    use document::method::{IndexEstimates, MethodStatus};
     use trial::Quantity;
 
     use super::*;
@@ -140,7 +140,7 @@ mod tests {
     fn an_answer_that_cannot_be_taken_says_why() {
         let entry = |method: &str, k_and_t: Option<[Quantity; 2]>| MethodEntry {
             method: method.into(),
-            status: Status::Ok,
+            status: MethodStatus::Ok,
             parameters: k_and_t.map(|[k_per_s, t_s]| IndexEstimates {
                 k_per_s,
                 t_s,
@@ -178,7 +178,7 @@ mod tests {
     fn a_replay_far_off_contradicts_the_answer() {
         let entry = |method: &str, t: f64, rms: f64| MethodEntry {
             method: method.into(),
-            status: Status::Ok,
+            status: MethodStatus::Ok,
             parameters: Some(IndexEstimates {
                 k_per_s: Quantity::without_uncertainty(0.1),
                 t_s: Quantity::without_uncertainty(t),
@@ -192,7 +192,7 @@ mod tests {
             let far = [entry("output-error", 9.0, 1.9), entry("least-squares", 28.0, rms)];
             let all = [&far[..], &[entry("maximum-likelihood", 41.0, rms)]].concat();
             let verdict = super::taken(&taken, &all, Some(straight)).expect("an answer");
-            (verdict.contradicted_by, verdict.set_apart.len(), verdict.straight_lines_deg)
+            (verdict.contradicted_by, verdict.far_off_methods.len(), verdict.straight_lines_rms_deg)
         };
         assert_eq!(outcome(38.0, 2.0), (Some("maximum-likelihood".into()), 2, None));
         assert_eq!(outcome(18.0, 1.9), (None, 0, Some(1.9)));

@@ -19,7 +19,7 @@ fn main() -> ExitCode {
 fn fit() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/records/first-order.csv".into());
     let path = PathBuf::from(path);
-    let log = Log::open(&path, Sidecar::existing_beside(&path).as_deref(), &[])?;
+    let log = InstrumentLog::open(&path, Sidecar::existing_beside(&path).as_deref(), &[])?;
     let ReadRecord { trial, warnings } = log.into_zig_zag(None)?;
     let (records, mut all_warnings) = ([trial], Warnings::default());
     all_warnings.extend(warnings);

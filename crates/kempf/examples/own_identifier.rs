@@ -59,7 +59,7 @@ impl Identifier for Differences {
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/yukun.toml".into());
     let study = Scenario::read(&PathBuf::from(path), None)?.with_identifier("differences", Arc::new(Differences))?;
-    let (design, rows) = in_memory(&study);
+    let (design, rows) = collect_in_memory(&study);
     let summary = summarise(&rows, &design);
     println!("{:28} median size of the error of T [%]", "method");
     for (method, performance) in design.methods.iter().zip(&summary.overall) {

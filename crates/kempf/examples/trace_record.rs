@@ -16,7 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  {} ({}): {}", effect.id, effect.form, effect.evidence);
     }
     let compared = &analysis.identification[0];
-    let (before, after) = (to_deg(compared.before.errors.heading), to_deg(compared.after.errors.heading));
+    let (before, after) =
+        (to_deg(compared.base_replay.errors.heading_rmse), to_deg(compared.average_replay.errors.heading_rmse));
     println!("heading error {before:.3} deg before, {after:.3} deg after");
     Ok(())
 }

@@ -45,7 +45,7 @@ pub use {campaign, document, identify, predict, ship, simulate, trace, trial};
 
 /// Names needed by most programs.
 pub mod prelude {
-    pub use campaign::collect::{collect, in_memory};
+    pub use campaign::collect::{collect, collect_in_memory};
     pub use campaign::folder::ResultFolder;
     pub use campaign::scenario::Scenario;
     pub use campaign::summary::summarise;
@@ -60,7 +60,7 @@ pub mod prelude {
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
     pub use simulate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
-    pub use trial::{Channel, Log, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
+    pub use trial::{Channel, InstrumentLog, ReadRecord, Sidecar, Trial, ZigZag, read, write_csv};
 }
 
 /// Text of the README, whose example is compiled with the documentation tests.

@@ -57,13 +57,15 @@ pub struct CorrectedFigure {
     pub sd: Option<f64>,
     /// R = T F/B.
     #[serde(flatten)]
-    pub result: PredictionInterval,
+    pub corrected: PredictionInterval,
     /// Factor F/B on the measured figure.
     pub factor: PredictionInterval,
     /// F: predicted by the model at the target loading.
-    pub full: PredictionInterval,
+    #[serde(rename = "full")]
+    pub target_prediction: PredictionInterval,
     /// B: predicted by the model in the condition of the trial.
-    pub ballast: PredictionInterval,
+    #[serde(rename = "ballast")]
+    pub trial_prediction: PredictionInterval,
     /// Warnings on this figure of merit.
     pub warnings: Vec<Warning>,
 }
@@ -77,9 +79,11 @@ pub struct Correction {
     #[serde(default)]
     pub name: String,
     /// Files of the models at the other loading.
-    pub full: Vec<String>,
+    #[serde(rename = "full")]
+    pub target_models: Vec<String>,
     /// Files of the models in the condition of the trial.
-    pub ballast: Vec<String>,
+    #[serde(rename = "ballast")]
+    pub trial_models: Vec<String>,
     /// Corrected figures of merit by name; empty if the record is neither a zig-zag nor a turn.
     pub figures: IndexMap<String, CorrectedFigure>,
     /// Warnings on all figures of merit.
@@ -151,7 +155,7 @@ struct PairedManoeuvre {
 /// are left empty.
 ///
 /// Fails if less than half of the drawn ships complete the manoeuvre. Source: MSC/Circ.1053 (2002), 3.4.1.2.
-pub fn correct(
+pub fn correct_to_loading(
     full: &ShipMixture,
     ballast: &ShipMixture,
     record: &Trial,
@@ -179,7 +183,7 @@ pub fn correct(
         (ballast, &paired.trial, String::from("in the condition of the trial")),
     ] {
         check_completed(format!("{} ({condition})", record.name()), results.iter().flatten().count(), draws)?;
-        if ship.is_extrapolated(paired.rudder, results.iter().flatten().map(|result| result.largest_rate)) {
+        if ship.is_extrapolated(paired.rudder, results.iter().flatten().map(|result| result.max_yaw_rate)) {
             let text = format!("the model {condition} is extrapolated beyond its records");
             warnings.push(WarningCode::ModelsApart.warning(text));
         }
@@ -208,7 +212,7 @@ fn zig_zag(
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown =
         names.filter_map(|name| Some((*name, ballast.measured_characteristic(record, zigzag, name)?))).collect();
-    Some(PairedManoeuvre { rudder: steered.kind.max_rudder(), full, trial, shown })
+    Some(PairedManoeuvre { rudder: steered.manoeuvre.max_rudder(), full, trial, shown })
 }
 
 /// Turn of a record, simulated with both models; `None` for a record without a turn or an initial motion, or too short.
@@ -233,17 +237,17 @@ fn turned(
         // Both ships start with the yaw rate of the record.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
         let standard_normal: f64 = key.rng(RngPurpose::Heading).sample(StandardNormal);
-        ship.yaw_rate = rate.0 + rate.1 * standard_normal;
+        ship.initial_yaw_rate = rate.0 + rate.1 * standard_normal;
         let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.characteristics_to_end(&passage);
         // Characteristics at the end are read after the duration of the record for both ships.
         figures.extend(
             turn.characteristics_within_record(&passage).into_iter().filter(|(name, _)| AT_THE_END.contains(name)),
         );
-        Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
+        Some(SampleResult { figures, max_yaw_rate: passage.max_yaw_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| parallel_draws(draws, |number| sail(mixture, number)));
-    Ok(Some(PairedManoeuvre { rudder: turn.rudder.abs(), full, trial, shown }))
+    Ok(Some(PairedManoeuvre { rudder: turn.max_rudder.abs(), full, trial, shown }))
 }
 
 /// Number with four significant digits and at most six decimals.
@@ -255,34 +259,32 @@ fn short(value: f64) -> String {
 /// R = T F/B of one characteristic; `None` if less than half of the pairs of ships have it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<CorrectedFigure> {
     let value = |draw: &Option<SampleResult>| draw.as_ref()?.figures.get(name).copied()?;
-    let sd = measured.sd.unwrap_or(0.0);
+    let Quantity { value: measured, sd, .. } = measured;
     let mut columns: [Vec<f64>; 4] = Default::default();
     for ((of_full, of_trial), reading) in full.iter().zip(trial).zip(readings) {
         let (Some(f), Some(b)) = (value(of_full), value(of_trial)) else { continue };
         let factor = f / b;
         if factor.is_finite() {
-            let row = [f, b, factor, (measured.value + sd * reading) * factor];
+            let row = [f, b, factor, (measured + sd.unwrap_or(0.0) * reading) * factor];
             columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
         }
     }
-    let share = columns[0].len() as f64 / readings.len() as f64;
-    if share < 0.5 {
-        return None;
-    }
-    let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::from_samples(&mut column));
-    let (full, ballast, factor, result) = (full?, ballast?, factor?, result?);
-    let [low, high] = ballast.ci90.map(short);
-    let mut messages = Vec::new();
-    if ballast.ci90.iter().any(|end| end * ballast.median.signum() < MIN_LOWER_END * ballast.median.abs()) {
+    let share = Some(columns[0].len() as f64 / readings.len() as f64).filter(|share| *share >= 0.5)?;
+    let [target, trial, factor, corrected] = columns.map(|mut column| PredictionInterval::from_samples(&mut column));
+    let (target_prediction, trial_prediction) = (target?, trial?);
+    let (factor, corrected) = (factor?, corrected?);
+    let [low, high] = trial_prediction.ci90.map(short);
+    let (mut messages, median) = (Vec::new(), trial_prediction.median);
+    if trial_prediction.ci90.iter().any(|end| end * median.signum() < MIN_LOWER_END * median.abs()) {
         messages.push(format!("B is near zero (90 % [{low}, {high}]), so the ratio F/B is ill-defined"));
     }
     let half = 0.5 * (factor.ci90[1] - factor.ci90[0]) / factor.median.abs();
     if half > MAX_HALF_WIDTH {
         messages.push(format!("F/B is uncertain by ±{:.0} %", 100.0 * half));
     }
-    let reach = 1.645 * sd;
-    if measured.value + reach < ballast.ci90[0] || measured.value - reach > ballast.ci90[1] {
-        let measured = short(measured.value);
+    let reach = 1.645 * sd.unwrap_or(0.0);
+    if measured + reach < trial_prediction.ci90[0] || measured - reach > trial_prediction.ci90[1] {
+        let measured = short(measured);
         messages.push(format!(
             "the model of the trial does not reproduce the measured {measured}, outside its 90 % \
             interval [{low}, {high}]"
@@ -292,7 +294,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
         messages.push(format!("only {:.0} % of the pairs of drawn ships get this far", 100.0 * share));
     }
     let warnings = messages.into_iter().map(|text| WarningCode::Correction.warning(text)).collect();
-    Some(CorrectedFigure { measured: measured.value, sd: measured.sd, result, factor, full, ballast, warnings })
+    Some(CorrectedFigure { measured, sd, corrected, factor, target_prediction, trial_prediction, warnings })
 }
 
 #[cfg(test)]
@@ -326,17 +328,17 @@ mod tests {
         let (mut held, mut all) = (0, 0);
         for number in 0..30_u64 {
             let trial = record(&ballast, "zig-zag:20/20", 1000 + number, from_deg(0.1));
-            let correction = correct(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
-            let manoeuvre = crate::standard::with_end(&kind, full.timescale()).expect("steered");
+            let correction = correct_to_loading(&full, &ballast, &trial, FULL_LOAD, 150).expect("both sail");
+            let manoeuvre = crate::standard::with_predicted_end(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
             let mut ship = full.draw_ship(2000 + number, &UncertaintySource::ALL);
-            (ship.yaw_rate, ship.gear) = (0.0, ballast.draw_ship(1000 + number, &UncertaintySource::ALL).gear);
+            (ship.initial_yaw_rate, ship.gear) = (0.0, ballast.draw_ship(1000 + number, &UncertaintySource::ALL).gear);
             let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, full.timescale()).expect("sails");
             let truth = crate::figures::characteristics(&kind, &passage, full.particulars());
             for name in names {
                 let Some(figure) = correction.figures.get(name) else { continue };
                 let truth = truth[name].expect("whole");
-                held += usize::from(figure.result.contains_90(truth));
+                held += usize::from(figure.corrected.contains_90(truth));
                 all += 1;
             }
         }
@@ -358,11 +360,11 @@ mod tests {
         });
         let truth = full.predict(&"zig-zag:20/20".parse().expect("known"), 4, false).expect("sails");
         let trial = record(&ballast, "zig-zag:20/20", 0, from_deg(0.02));
-        let correction = correct(&full, &ballast, &trial, FULL_LOAD, 40).expect("both sail");
+        let correction = correct_to_loading(&full, &ballast, &trial, FULL_LOAD, 40).expect("both sail");
         for name in ["first_overshoot_deg", "second_overshoot_deg", "initial_turning_time_s"] {
             let expected = truth.figures[name].interval.median;
             let figure = &correction.figures[name];
-            assert!((figure.result.median / expected - 1.0).abs() < 0.03, "{name}: {figure:?} {expected}");
+            assert!((figure.corrected.median / expected - 1.0).abs() < 0.03, "{name}: {figure:?} {expected}");
             let is_other = !name.contains("overshoot") || figure.factor.median > 1.3;
             assert!(is_other, "{name}: the ship at full load is less stable, {figure:?}");
             assert!(figure.factor.ci90[1] - figure.factor.ci90[0] < 1e-9, "nothing is drawn");
@@ -377,14 +379,14 @@ mod tests {
         copy.members[0].weight = 0.5;
         let [ballast, copy] = [ballast, copy].map(mixture);
         let trial = record(&ballast, "zig-zag:20/20", 7, from_deg(0.1));
-        let same = correct(&ballast, &ballast, &trial, FULL_LOAD, 60).expect("sails");
+        let same = correct_to_loading(&ballast, &ballast, &trial, FULL_LOAD, 60).expect("sails");
         for figure in same.figures.values() {
             assert_eq!(figure.factor.ci90, [1.0, 1.0], "{figure:?}");
         }
-        let other = correct(&copy, &ballast, &trial, FULL_LOAD, 200).expect("sails");
+        let other = correct_to_loading(&copy, &ballast, &trial, FULL_LOAD, 200).expect("sails");
         assert!(other.figures.len() > 5);
         for figure in other.figures.values() {
-            assert!(figure.result.contains_90(figure.measured) && figure.factor.contains_90(1.0), "{figure:?}");
+            assert!(figure.corrected.contains_90(figure.measured) && figure.factor.contains_90(1.0), "{figure:?}");
             assert!(figure.factor.ci90[1] > figure.factor.ci90[0], "drawn apart");
         }
     }
@@ -397,7 +399,7 @@ mod tests {
         let taken = vec![testing::at_same_loading(&ballast.hulls[0], 1.0)];
         let full = mixture(IdentifiedShip { hulls: taken, ..ballast.clone() });
         let trial = record(&mixture(testing::identified_ship()), "zig-zag:20/20", 7, from_deg(0.1));
-        let correction = correct(&full, &mixture(ballast), &trial, FULL_LOAD, 200).expect("sails");
+        let correction = correct_to_loading(&full, &mixture(ballast), &trial, FULL_LOAD, 200).expect("sails");
         assert_eq!(correction.figures["first_overshoot_deg"].factor.ci90, [1.0, 1.0]);
     }
 
@@ -409,7 +411,7 @@ mod tests {
         full.members[0].parameters[1] *= 0.5;
         let [full, ballast] = [full, ballast].map(mixture);
         let trial = record(&ballast, "turning-circle:15", 3, from_deg(0.1));
-        let correction = correct(&full, &ballast, &trial, FULL_LOAD, 60).expect("both sail");
+        let correction = correct_to_loading(&full, &ballast, &trial, FULL_LOAD, 60).expect("both sail");
         let names: Vec<&String> = correction.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
         let time = &correction.figures[1];
@@ -436,10 +438,10 @@ mod tests {
         }
         let [full, vague, exact] = [full, ballast, testing::identified_ship()].map(mixture);
         let trial = record(&exact, "zig-zag:20/20", 0, from_deg(0.1));
-        let correction = correct(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
+        let correction = correct_to_loading(&full, &vague, &trial, FULL_LOAD, 200).expect("most sail");
         let first = &correction.figures["first_overshoot_deg"];
         assert!(first.warnings.iter().any(|warning| warning.text.starts_with("F/B is uncertain by ±")), "{first:?}");
-        let strange = correct(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
+        let strange = correct_to_loading(&full, &full, &trial, FULL_LOAD, 100).expect("sails");
         let outside = |figure: &CorrectedFigure| {
             figure.warnings.iter().any(|warning| warning.text.contains("outside its 90 % interval ["))
         };

@@ -127,7 +127,8 @@ pub struct PredictCurves {
 impl PredictDocument {
     /// Curves, which [`with_curves`](Self::with_curves) restores.
     pub fn curves(&self) -> PredictCurves {
-        let replay_curves = |r: &RecordReplay| (r.rudder.clone(), r.heading.clone(), r.measured.clone());
+        let replay_curves =
+            |r: &RecordReplay| (r.rudder_times_and_angles.clone(), r.heading_band.clone(), r.measured_heading.clone());
         PredictCurves {
             manoeuvres: self.manoeuvres.iter().map(|prediction| prediction.curves.clone()).collect(),
             replays: self.replays.iter().map(replay_curves).collect(),
@@ -138,7 +139,7 @@ impl PredictDocument {
     pub fn with_curves(mut self, curves: PredictCurves) -> Self {
         self.manoeuvres.iter_mut().zip(curves.manoeuvres).for_each(|(prediction, curves)| prediction.curves = curves);
         for (replay, curves) in self.replays.iter_mut().zip(curves.replays) {
-            (replay.rudder, replay.heading, replay.measured) = curves;
+            (replay.rudder_times_and_angles, replay.heading_band, replay.measured_heading) = curves;
         }
         self
     }
@@ -167,14 +168,14 @@ mod tests {
     fn what_is_written_is_read_again() {
         let mixture = testing::mixture(testing::identified_ship());
         let manoeuvres: Vec<Prediction> =
-            form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
+            form::form_manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();
-        let form = form::fill(&manoeuvres, particulars, "fit.json", &[], None);
+        let form = form::fill_form(&manoeuvres, particulars, "fit.json", &[], None);
         let document = PredictDocument {
             schema: SCHEMA.into(),
             models: vec![ModelWeight { file: "fit.json".into(), weight: 1.0 }],
             draws: 20,
-            imo: imo::criteria(&manoeuvres, particulars.expect("made up")),
+            imo: imo::predicted_criteria(&manoeuvres, particulars.expect("made up")),
             manoeuvres,
             form: Some(form.entries),
             form_remarks: Some(form.remarks),

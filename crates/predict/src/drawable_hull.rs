@@ -69,7 +69,12 @@ impl HullSampler {
     fn with_coefficients(&self, values: &[f64]) -> Option<ScaledHull> {
         let hull = self.form.with_coefficients(values)?;
         let IdentifiedHull { length_m: length, speed_m_s: speed, propeller_per_s: propeller, .. } = self.stored;
-        (values.iter().all(|value| value.is_finite())).then_some(ScaledHull { hull, length, speed, propeller })
+        (values.iter().all(|value| value.is_finite())).then_some(ScaledHull {
+            hull,
+            length,
+            speed,
+            propeller_rate: propeller,
+        })
     }
 
     /// Hull with the stored values.
@@ -116,7 +121,7 @@ mod tests {
     use crate::mixture::{ShipMixture, UncertaintySource};
     use crate::testing;
     use document::IdentifiedShip;
-    use ship::{Dynamics, Input};
+    use ship::{Dynamics, ShipInput};
     use simulate::Manoeuvre;
 
     fn ship() -> IdentifiedShip {
@@ -174,7 +179,7 @@ mod tests {
         let large = stored.scaled_to(length, speed);
         let of = |stored: &IdentifiedHull, state: [f64; 4]| {
             let mut rate = [0.0; 4];
-            let input = Input { rudder: 0.3, disturbance: 0.02, ..Input::default() };
+            let input = ShipInput { rudder: 0.3, disturbance_rudder: 0.02, ..ShipInput::default() };
             HullSampler::new(stored).expect("a hull").most_probable().rates(0.0, &state, &input, &mut rate);
             rate
         };

@@ -13,7 +13,7 @@ use crate::mixture::{
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnParameters {
     /// Index of the file in the mixture.
-    pub file: usize,
+    pub file_index: usize,
     /// Form of the hull, or the effects of the response, joined by ` + `; `first_order` for a response without effects.
     pub structure: String,
     /// Probability of this structure or hull in the mixture.
@@ -32,7 +32,8 @@ impl ShipMixture {
     /// manoeuvres.
     pub fn draw_parameters(&self, number: u64) -> DrawnParameters {
         let part = self.drawn_structure(number);
-        let DrawnShip { response, coefficients, gear, yaw_rate, .. } = self.draw_ship(number, &UncertaintySource::ALL);
+        let DrawnShip { response, hull_coefficients: coefficients, gear, initial_yaw_rate: yaw_rate, .. } =
+            self.draw_ship(number, &UncertaintySource::ALL);
         let (structure, parameters) = match &part.hull {
             Some(hull) => {
                 let form = hull.stored.form.clone();
@@ -42,8 +43,15 @@ impl ShipMixture {
             }
             None => named(response.model(), response.parameters()),
         };
-        let (file, weight) = (part.file, part.weight);
-        DrawnParameters { file, structure, weight, gear_rate_rad_s: gear.rate, yaw_rate_rad_s: yaw_rate, parameters }
+        let (file, weight) = (part.file_index, part.weight);
+        DrawnParameters {
+            file_index: file,
+            structure,
+            weight,
+            gear_rate_rad_s: gear.rudder_rate,
+            yaw_rate_rad_s: yaw_rate,
+            parameters,
+        }
     }
 }
 
@@ -131,7 +139,7 @@ mod tests {
         assert!(keys.len() == 4 && keys[3].starts_with("nonlinear_damping."), "{keys:?}");
         let values: Vec<f64> = drawn.parameters.iter().map(|(_, value)| *value).collect();
         assert_eq!(values, ship.response.parameters());
-        assert_eq!((drawn.gear_rate_rad_s, drawn.yaw_rate_rad_s), (ship.gear.rate, ship.yaw_rate));
+        assert_eq!((drawn.gear_rate_rad_s, drawn.yaw_rate_rad_s), (ship.gear.rudder_rate, ship.initial_yaw_rate));
         assert_eq!((drawn.structure.as_str(), drawn.weight), ("nonlinear_damping", 1.0));
 
         let hulls = ["quadratic", "mmg"].map(testing::hull).to_vec();

@@ -114,7 +114,7 @@ fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Characteristics) {
     for (number, name) in OVERSHOOT_NAMES.into_iter().enumerate() {
         let overshoot = || {
             let (before, now, next) = (executes.get(number)?, executes.get(number + 1)?, executes.get(number + 2)?);
-            let side = before.order.signum();
+            let side = before.ordered_rudder.signum();
             Some(to_deg(passage.peak(side, now.time, next.time)? - side * now.heading))
         };
         figures.insert(name, overshoot());
@@ -169,13 +169,13 @@ mod tests {
         let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             hull: None,
-            coefficients: Vec::new(),
+            hull_coefficients: Vec::new(),
             gear: SteeringGear::with_rate(from_deg(2.5)),
             disturbances: Disturbances::default(),
-            yaw_rate: 0.0,
-            key: StreamKey::default(),
+            initial_yaw_rate: 0.0,
+            moment_key: StreamKey::default(),
         };
-        SimulatedManoeuvre::simulate(&ship, &crate::standard::with_end(kind, 12.8).expect("steered"), 12.8)
+        SimulatedManoeuvre::simulate(&ship, &crate::standard::with_predicted_end(kind, 12.8).expect("steered"), 12.8)
             .expect("a manoeuvre")
     }
 

@@ -46,7 +46,7 @@ pub struct ImoForm {
 /// Manoeuvres of the form, to both sides.
 ///
 /// The initial turning is read from the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
-pub fn manoeuvres() -> Vec<Manoeuvre> {
+pub fn form_manoeuvres() -> Vec<Manoeuvre> {
     standard::imo_manoeuvres().into_iter().flat_map(|kind| [kind.clone().with_first_side(Side::Port), kind]).collect()
 }
 
@@ -114,7 +114,7 @@ fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: S
 /// `particulars` are at the scale of the predictions; their L/V sets the limits of the 10/10 zig-zag. `models` names
 /// the source of the predictions. Declarations of the ship come from the first record that has them; `declared` are
 /// declarations without a record, from a file.
-pub fn fill<'a>(
+pub fn fill_form<'a>(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
     models: &str,
@@ -185,9 +185,9 @@ fn measured(limit: &ImoLimit, side: &str, tested: &[TestedManoeuvre]) -> Option<
                 "measured at partial load, {file}, and corrected by F/B = {} {}, 90 % {}{doubt}",
                 fixed(figure.factor.median, decimals(&figure.factor)),
                 range(&figure.factor),
-                range(&figure.result),
+                range(&figure.corrected),
             );
-            return Some((false, of_interval(&figure.result, source)));
+            return Some((false, of_interval(&figure.corrected, source)));
         }
         let is_partial = record.loading() == Some(Loading::Partial);
         let load = if is_partial { ", at partial load, not corrected" } else { "" };
@@ -293,7 +293,7 @@ mod tests {
     }
 
     fn predictions(mixture: &ShipMixture) -> Vec<Prediction> {
-        manoeuvres().iter().map(|kind| mixture.predict(kind, 60, false).expect("sails")).collect()
+        form_manoeuvres().iter().map(|kind| mixture.predict(kind, 60, false).expect("sails")).collect()
     }
 
     fn entry<'a>(form: &'a ImoForm, section: &str, name: &str, side: Option<&str>) -> &'a ImoFormEntry {
@@ -321,7 +321,7 @@ mod tests {
 
     #[test]
     fn manoeuvres_go_to_both_sides() {
-        let names: Vec<String> = manoeuvres().iter().map(Manoeuvre::to_string).collect();
+        let names: Vec<String> = form_manoeuvres().iter().map(Manoeuvre::to_string).collect();
         let expected = ["zig-zag -10/10", "zig-zag 10/10", "zig-zag -20/20", "zig-zag 20/20"];
         assert_eq!(names[..4], expected);
         assert_eq!(names[4..], ["turning-circle -35", "turning-circle 35"]);
@@ -335,10 +335,11 @@ mod tests {
             testing::mixture(ship)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
-        let correction = correction::correct(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");
+        let correction =
+            correction::correct_to_loading(&full, &ballast, &trial, correction::FULL_LOAD, 60).expect("both sail");
         let all = predictions(&full);
         let with = |correction| {
-            fill(&all, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
+            fill_form(&all, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
         };
         let of = |form: &ImoForm| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
@@ -357,7 +358,7 @@ mod tests {
         let ship = testing::mixture(testing::identified_ship());
         let remarks = |kind: &str| {
             let trial = record(&ship, kind, DeclaredConditions::default());
-            let form = fill(
+            let form = fill_form(
                 &predictions(&ship),
                 ship.particulars(),
                 "",
@@ -375,7 +376,7 @@ mod tests {
         );
         assert!(remarks("zig-zag:10/20").contains("a zig-zag of 10/20"));
         let declared = DeclaredConditions { ship_type: Some("ferry".into()), ..DeclaredConditions::default() };
-        let form = fill(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));
+        let form = fill_form(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));
         assert_eq!(entry(&form, "ship", "ship type", None).value, Some("ferry".into()));
         assert_eq!(entry(&form, "ship", "L/V", None).value, None);
         assert_eq!(entry(&form, "10°/10°", "1st overshoot angle", Some("port")).limit, None);

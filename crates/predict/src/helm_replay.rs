@@ -20,12 +20,12 @@ pub(crate) struct SampleResult {
     /// Characteristics; their names are the same for every draw.
     pub figures: Characteristics,
     /// Maximum |yaw rate|, rad/s.
-    pub largest_rate: f64,
+    pub max_yaw_rate: f64,
 }
 
 /// Manoeuvre, initial yaw rate and rudder rate of a measured zig-zag, with which drawn ships are steered.
 pub(crate) struct SteeredZigZag {
-    pub kind: Manoeuvre,
+    pub manoeuvre: Manoeuvre,
     /// Change of heading that ends the initial turning, rad: the nominal change, also if the helm is late.
     turned: f64,
     /// Number of executes of the record, which determine its period.
@@ -37,9 +37,9 @@ pub(crate) struct SteeredZigZag {
 }
 
 impl SteeredZigZag {
-    /// Zig-zag of a record; `approach` is the root mean square of the yaw rate at the end of a straight approach of the
-    /// ship, rad/s. `None` if the record begins within the trial, or has a single execute.
-    pub fn from_measured(measured: &Measured, approach: f64) -> Option<Self> {
+    /// Zig-zag of a record; `approach_yaw_rate` is the root mean square of the yaw rate at the end of a straight
+    /// approach of the ship, rad/s. `None` if the record begins within the trial, or has a single execute.
+    pub fn from_measured(measured: &Measured, approach_yaw_rate: f64) -> Option<Self> {
         let side = measured.first_side?;
         let executes = &measured.executes;
         if executes.len() < 2 {
@@ -58,33 +58,34 @@ impl SteeredZigZag {
         let yaw_rate = match measured.straight_yaw_rate() {
             // A slope from few headings is shrunk towards zero by its error.
             Some(rate) => {
-                let variance = approach.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
-                if variance > 0.0 { rate.value * approach.powi(2) / variance } else { 0.0 }
+                let variance = approach_yaw_rate.powi(2) + rate.sd.unwrap_or(0.0).powi(2);
+                if variance > 0.0 { rate.value * approach_yaw_rate.powi(2) / variance } else { 0.0 }
             }
             None => executes[0].yaw_rate.map_or(0.0, |rate| rate.value),
         };
         let kind = Manoeuvre::zig_zag(rudder, heading).with_first_side(side);
         let turned = measured.nominal_angles.map_or(heading, |pair| pair.heading);
-        Some(Self { kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
+        Some(Self { manoeuvre: kind, turned, executes: executes.len(), yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// Results of drawn ships, in the order of their numbers; `None` for a ship that does not complete the manoeuvre.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<SampleResult>> {
-        let manoeuvre = standard::with_end(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
+        let manoeuvre =
+            standard::with_predicted_end(&self.manoeuvre, mixture.timescale()).expect("a zig-zag is steered");
         // The record gives the yaw rate of the approach.
         let is_drawn = |source: &UncertaintySource| *source != UncertaintySource::InitialState;
         let sources: Vec<UncertaintySource> = UncertaintySource::ALL.into_iter().filter(is_drawn).collect();
         parallel_draws(draws, |number| {
             let mut ship = mixture.draw_ship(number, &sources);
-            ship.yaw_rate += self.yaw_rate;
-            ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
+            ship.initial_yaw_rate += self.yaw_rate;
+            ship.gear.rudder_rate = self.rudder_rate.or(ship.gear.rudder_rate);
             let passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, mixture.timescale()).ok()?;
-            let mut figures = figures::characteristics(&self.kind, &passage, mixture.particulars());
-            let turned = passage.time_of_heading_change(self.turned, self.kind.first_side().sign());
+            let mut figures = figures::characteristics(&self.manoeuvre, &passage, mixture.particulars());
+            let turned = passage.time_of_heading_change(self.turned, self.manoeuvre.first_side().sign());
             let shown = passage.executes.get(..self.executes).unwrap_or(&passage.executes);
             figures.insert("period_s", figures::execute_period(shown));
             figures.extend(figures::initial_turning(&passage, turned, mixture.particulars()));
-            Some(SampleResult { figures, largest_rate: passage.max_yaw_rate() })
+            Some(SampleResult { figures, max_yaw_rate: passage.max_yaw_rate() })
         })
     }
 }

@@ -145,7 +145,7 @@ pub fn imo_limit(figure: &str, length_over_speed: f64) -> Option<(&'static str, 
 
 /// IMO criteria with the predicted values, for a ship of this length and speed; a criterion without a prediction is
 /// left out.
-pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
+pub fn predicted_criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &ImoLimit| {
         let figure = prediction.figures.get(limit.figure)?;
         let largest = (limit.value)(Some(particulars))?;
@@ -179,7 +179,7 @@ mod tests {
             .iter()
             .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
             .collect();
-        let predicted = criteria(&predictions, mixture.particulars().expect("made up"));
+        let predicted = predicted_criteria(&predictions, mixture.particulars().expect("made up"));
         let names: Vec<&str> = predicted.iter().map(|criterion| criterion.criterion.as_str()).collect();
         assert_eq!(
             names,

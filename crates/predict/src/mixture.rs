@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use ship::vessel::scaled::ScaledHull;
-use ship::{Regressor, Response, ResponseModel};
+use ship::{RegressorChannel, Response, ResponseModel};
 use simulate::disturbance::{GaussMarkov, Wind};
 use simulate::{Disturbances, RngPurpose, SteeringGear, StreamKey};
 
@@ -68,7 +68,7 @@ pub(crate) struct StructureSampler {
     /// Hull that replaces the response of the structure; `None` for the response itself.
     pub hull: Option<HullSampler>,
     /// Index of the file.
-    pub file: usize,
+    pub file_index: usize,
 }
 
 /// Mixture of the models of a ship from one or several files.
@@ -96,15 +96,15 @@ pub struct DrawnShip {
     /// Hull, which replaces the response; `None` if none was fitted.
     pub hull: Option<ScaledHull>,
     /// Coefficients of the hull; empty without a hull.
-    pub coefficients: Vec<f64>,
+    pub hull_coefficients: Vec<f64>,
     /// Steering gear.
     pub gear: SteeringGear,
     /// Disturbances.
     pub disturbances: Disturbances,
     /// Initial yaw rate, rad/s: of the approach, plus the error of a hull.
-    pub yaw_rate: f64,
+    pub initial_yaw_rate: f64,
     /// Key of the random numbers of the yaw moment.
-    pub key: StreamKey,
+    pub moment_key: StreamKey,
 }
 
 impl ShipMixture {
@@ -173,7 +173,7 @@ impl ShipMixture {
         let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.is_independent), cell: 0, replicate: number };
         let part = if has(UncertaintySource::Structure) { self.drawn_structure(number) } else { self.likeliest() };
-        let stored = &self.ships[part.file];
+        let stored = &self.ships[part.file_index];
         let mut rng = key.rng(RngPurpose::Specification);
         let mut values = match has(UncertaintySource::Parameters) {
             true => part.sample(&mut rng),
@@ -206,11 +206,11 @@ impl ShipMixture {
         DrawnShip {
             response: part.model.clone().with_parameters(values),
             hull,
-            coefficients: coefficients.unwrap_or_default(),
+            hull_coefficients: coefficients.unwrap_or_default(),
             gear,
             disturbances: self.disturbances(moment, part.hull.is_some()),
-            yaw_rate: approach + error,
-            key,
+            initial_yaw_rate: approach + error,
+            moment_key: key,
         }
     }
 
@@ -226,7 +226,7 @@ impl ShipMixture {
             RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s } => {
                 disturbances.gusts = Some(GaussMarkov { sd: sd_rudder_rad, correlation_time: correlation_s });
             }
-            RandomMoment::Walk { rudder_rad_per_root_s } => disturbances.random_walk = rudder_rad_per_root_s,
+            RandomMoment::Walk { rudder_rad_per_root_s } => disturbances.moment_random_walk = rudder_rad_per_root_s,
         }
         disturbances
     }
@@ -235,7 +235,7 @@ impl ShipMixture {
     /// file.
     fn likeliest(&self) -> &StructureSampler {
         let file = (0..self.ships.len()).rev().max_by(|a, b| self.shares[*a].total_cmp(&self.shares[*b]));
-        likeliest(self.parts.iter().filter(|part| Some(part.file) == file)).expect("there is a structure")
+        likeliest(self.parts.iter().filter(|part| Some(part.file_index) == file)).expect("there is a structure")
     }
 
     /// Structure of a drawn ship, by a low-discrepancy sequence of the golden ratio, so that shares match probabilities
@@ -273,13 +273,13 @@ impl StructureSampler {
     pub(crate) fn new(stored: &WeightedStructure, weight: f64, file: usize) -> Result<Self, PredictError> {
         let (weight, model) = (checked(weight, stored.weight)?, stored.model()?);
         let (root, dead_times) = (covariance_root(&stored.covariance)?, stored.dead_time_indices(&model));
-        Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file })
+        Ok(Self { weight, model, stored: stored.clone(), root, dead_times, hull: None, file_index: file })
     }
 
     /// Same structure, checked to have all channels that its effects need in a manoeuvre.
     fn sailing(self, ship: &IdentifiedShip) -> Result<Self, PredictError> {
         for (regressor, channel, option) in
-            [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
+            [(RegressorChannel::Sway, "sway velocity", "sway"), (RegressorChannel::Speed, "speed", "speed")]
         {
             let needs = self.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
             if needs && ship.hulls.is_empty() {
@@ -292,7 +292,7 @@ impl StructureSampler {
     /// Random yaw moment: the model error of the hull, or else the moment of the noise law of the ship.
     fn moment(&self, ship: &IdentifiedShip) -> RandomMoment {
         let Some(hull) = &self.hull else { return ship.noise.moment };
-        let RandomYawMoment { deviation_rudder_rad: sd_rudder_rad, correlation_s } = hull.stored.model_error_moment;
+        let RandomYawMoment { sd_rudder_rad, correlation_s } = hull.stored.model_error_moment;
         match sd_rudder_rad > 0.0 {
             true => RandomMoment::OrnsteinUhlenbeck { sd_rudder_rad, correlation_s },
             false => RandomMoment::None,
@@ -391,7 +391,7 @@ mod tests {
         let stored = IdentifiedShip { hulls, approach_yaw_rate_rad_s: 0.0, ..testing::identified_ship() };
         let of = |stored: IdentifiedShip, sources: &[UncertaintySource]| {
             let mixture = testing::mixture(stored);
-            let squares = (0..1000).map(|number| mixture.draw_ship(number, sources).yaw_rate.powi(2));
+            let squares = (0..1000).map(|number| mixture.draw_ship(number, sources).initial_yaw_rate.powi(2));
             (squares.sum::<f64>() / 1000.0).sqrt()
         };
         let found = of(stored.clone(), &UncertaintySource::ALL);

@@ -39,20 +39,21 @@ pub struct PredictedFigure {
     /// `true` if rudder or yaw rate of the manoeuvre are beyond the range of the records.
     pub extrapolated: bool,
     /// Share of the samples that have the figure of merit.
-    pub defined: f64,
+    #[serde(rename = "defined")]
+    pub share_of_draws: f64,
     /// Share of every source of uncertainty in the spread.
     pub shares: IndexMap<String, f64>,
     /// Value of the figure in every drawn ship, by its number; `None` where the ship does not have it. The unit is in
     /// the name of the figure.
     #[serde(skip)]
-    pub draws: Vec<Option<f64>>,
+    pub drawn_values: Vec<Option<f64>>,
 }
 
 impl PredictedFigure {
     /// Share of the drawn ships within a limit; a ship without the characteristic counts as outside.
     pub fn share_within(&self, limit: f64) -> f64 {
-        let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
-        kept as f64 / self.draws.len() as f64
+        let kept = self.drawn_values.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
+        kept as f64 / self.drawn_values.len() as f64
     }
 }
 
@@ -161,7 +162,7 @@ impl ShipMixture {
     ///
     /// Fails if less than half of the drawn ships complete the manoeuvre.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        let Some(manoeuvre) = crate::standard::with_end(kind, self.timescale()) else {
+        let Some(manoeuvre) = crate::standard::with_predicted_end(kind, self.timescale()) else {
             return Ok(self.spiral(kind, draws, shares));
         };
         let sail = |number: u64, sources: &[UncertaintySource]| {
@@ -262,7 +263,10 @@ fn predicted(
         let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
         let shares = spreads.into_iter().filter(|_| sum > 0.0);
         let shares = shares.map(|(source, spread)| (source.to_owned(), spread / sum)).collect();
-        Some((name.to_owned(), PredictedFigure { interval, extrapolated, defined, shares, draws: of_draws }))
+        Some((
+            name.to_owned(),
+            PredictedFigure { interval, extrapolated, share_of_draws: defined, shares, drawn_values: of_draws },
+        ))
     };
     draws.iter().flatten().next().into_iter().flat_map(|first| first.keys()).filter_map(figure).collect()
 }
@@ -313,7 +317,7 @@ mod tests {
         let prediction = sure.predict(&kind("zig-zag:10/10"), 8, true).expect("a manoeuvre");
         for (name, figure) in &prediction.figures {
             assert_eq!(figure.interval.ci90[0], figure.interval.ci90[1], "{name}");
-            assert!(figure.shares.is_empty() && figure.defined == 1.0);
+            assert!(figure.shares.is_empty() && figure.share_of_draws == 1.0);
         }
         assert!(!prediction.is_extrapolated() && prediction.incomplete_draws == 0);
         assert!(prediction.curves.heading.time.len() > 100);

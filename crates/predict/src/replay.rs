@@ -65,13 +65,13 @@ pub struct RecordReplay {
     pub tracks: Option<TurnTracks>,
     /// Time from the first row, s, and rudder, rad.
     #[serde(skip)]
-    pub rudder: [Vec<f64>; 2],
+    pub rudder_times_and_angles: [Vec<f64>; 2],
     /// Heading with the band of a reading, at the rows of the record.
     #[serde(skip)]
-    pub heading: BandedCurve,
+    pub heading_band: BandedCurve,
     /// Measured headings at these rows, rad.
     #[serde(skip)]
-    pub measured: Vec<f64>,
+    pub measured_heading: Vec<f64>,
 }
 
 /// File of a measured record, as the user named it; the name of a simulated record.
@@ -127,10 +127,10 @@ impl ShipMixture {
         let Some([first, rate]) = ships.initial_motion(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let mut ship = ships.draw_ship(number, sources);
-            let mut rng = ship.key.rng(RngPurpose::Heading);
+            let mut rng = ship.moment_key.rng(RngPurpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let noise_factor = if sources.is_empty() { 0.0 } else { 1.0 };
-            ship.yaw_rate = rate.0 + noise_factor * rate.1 * of_rate;
+            ship.initial_yaw_rate = rate.0 + noise_factor * rate.1 * of_rate;
             let mut passage = SimulatedManoeuvre::simulate(&ship, &manoeuvre, self.timescale()).ok()?;
             passage.rotate_course(first.0 + noise_factor * first.1 * of_heading);
             Some((passage, rng))
@@ -164,15 +164,15 @@ impl ShipMixture {
         Ok(Some(RecordReplay {
             file: record_file(trial).to_owned(),
             name: trial.name().to_owned(),
-            rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
+            rudder_times_and_angles: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
             band_coverage_90: held as f64 / rows.len() as f64,
             heading_rmse_deg: to_deg(rms_difference(&measured, &heading.most_probable)),
             extrapolated: ships.is_extrapolated(trial.largest_rudder(), largest_rates),
             figures,
             tracks,
             current,
-            heading,
-            measured,
+            heading_band: heading,
+            measured_heading: measured,
         }))
     }
 
@@ -182,7 +182,7 @@ impl ShipMixture {
         let mut ships = self.clone();
         ships.wind = approach.zip(trial.mean_true_wind()).map(|(heading, [speed, from])| Wind {
             moment: 0.0,
-            from: from - heading,
+            from_direction: from - heading,
             speed: Some(speed),
             gusting: None,
         });
@@ -196,7 +196,7 @@ impl ShipMixture {
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
         let drawn: Vec<Characteristics> = drawn.map(|result| result.figures).collect();
-        check_completed(&steered.kind, drawn.len(), draws)?;
+        check_completed(&steered.manoeuvre, drawn.len(), draws)?;
         Ok(compared(&drawn, |name| self.measured_characteristic(trial, measured, name)))
     }
 
@@ -335,10 +335,11 @@ mod tests {
         let channels = [(Channel::Rudder, 0.1), (Channel::Heading, 0.2)].into_iter().chain(wind);
         let channels = channels.map(|(channel, value)| (channel, vec![value; time.len()])).collect();
         let origin = RecordOrigin::Measured { file: "made up".into(), sha256: String::new() };
-        let trial = Trial::new("blown", origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
+        let trial =
+            Trial::new("blown", origin, Columns { time, channels, unknown_columns: Vec::new() }).expect("a record");
         let of = |ship: IdentifiedShip| testing::mixture(ship).in_wind_of(&trial).draw_ship(1, &UncertaintySource::ALL);
         let met = of(ship.clone()).disturbances.wind.expect("a wind");
-        assert!((met.from - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
+        assert!((met.from_direction - 0.3).abs() < 1e-12 && (met.speed.expect("known") - 9.0).abs() < 1e-12, "{met:?}");
         assert_eq!(of(testing::identified_ship()).disturbances.wind, None);
         assert_eq!(of(ship.in_calm().expect("known")).hull.expect("a hull").hull.windage, 0.0);
     }

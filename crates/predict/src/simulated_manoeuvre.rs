@@ -118,7 +118,7 @@ impl SimulatedManoeuvre {
         if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
             simulation.gear = ship.gear;
         }
-        simulation.approach.yaw_rate = ship.yaw_rate;
+        simulation.approach.yaw_rate = ship.initial_yaw_rate;
         simulation.disturbances = ship.disturbances;
         // As fine as the rows, because a ship does not respond to faster changes.
         let correlation = ship.disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
@@ -132,7 +132,7 @@ impl SimulatedManoeuvre {
             let step = (shortest / STEPS_PER_TIME_CONSTANT).min(row_interval(timescale));
             simulation.solver = Solver::RungeKutta(step.max(MIN_STEP_S));
         }
-        let passage = Self::from_simulation(simulation, &ship.key, timescale)?;
+        let passage = Self::from_simulation(simulation, &ship.moment_key, timescale)?;
         match ship.hull.as_ref().and_then(|hull| passage.runs_away(MAX_PRIME_SPEED * hull.speed)) {
             Some(row) => Err(SimulateError::Diverged {
                 time: passage.time(row),
@@ -156,10 +156,10 @@ impl SimulatedManoeuvre {
         simulation.recording = Recording::every(row_interval(timescale));
         simulation.longest_wait = MAX_WAIT_TIMESCALES * timescale;
         let SimulatedTrial { trial, truth } = simulation.run(key)?;
-        let Truth { heading, yaw_rate, rudder, executes, .. } = Arc::unwrap_or_clone(truth);
+        let Truth { heading, yaw_rate, rudder, execute_orders: executes, .. } = Arc::unwrap_or_clone(truth);
         let length = simulation.ship.particulars().map(|particulars| particulars.length);
         let planar_motion = length.and_then(|length| PlanarMotion::from_trial(length, &trial, &heading));
-        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, planar_motion })
+        Ok(Self { period: simulation.recording.sampling_period, heading, yaw_rate, rudder, executes, planar_motion })
     }
 
     /// Rotates the motion to another course: headings increase by `angle` (rad).

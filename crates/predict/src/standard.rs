@@ -25,7 +25,7 @@ pub fn imo_manoeuvres() -> Vec<Manoeuvre> {
 
 /// Requested manoeuvre with the end that a prediction has: a number of executes, a change of heading, or a multiple of
 /// the timescale (s) of the ship; `None` for a spiral, which is predicted as a steady curve.
-pub fn with_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
+pub fn with_predicted_end(requested: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
     let mut manoeuvre = requested.clone();
     match &mut manoeuvre {
         Manoeuvre::ZigZag { executes, .. } => *executes = Some(ZIG_ZAG_EXECUTES),

@@ -77,7 +77,7 @@ pub(crate) fn hull(form: &str) -> IdentifiedHull {
         particulars: [("length-m".into(), length_m), ("speed-m-s".into(), speed_m_s)].into(),
         covariance: (0..coefficients.len()).map(row).collect(),
         coefficients,
-        model_error_moment: RandomYawMoment { deviation_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
+        model_error_moment: RandomYawMoment { sd_rudder_rad: from_deg(0.5), correlation_s: 25.0 },
         beginning_yaw_rate_rad_s: from_deg(0.01),
         trial_hull: None,
     }
@@ -102,11 +102,11 @@ pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
 pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
     let ship = if number == 0 { mixture.most_probable() } else { mixture.draw_ship(number, &UncertaintySource::ALL) };
     let requested: Manoeuvre = kind.parse().expect("known");
-    let manoeuvre = standard::with_end(&requested, mixture.timescale()).expect("steered");
+    let manoeuvre = standard::with_predicted_end(&requested, mixture.timescale()).expect("steered");
     let mut simulation = Simulation::new(SimulatedShip::from_response(ship.response), manoeuvre);
     simulation.gear = ship.gear;
     simulation.disturbances = ship.disturbances;
     simulation.sensors.heading_noise = noise;
-    simulation.recording.period = period;
+    simulation.recording.sampling_period = period;
     simulation.run(&StreamKey { seed: 5, cell: 0, replicate: number }).expect("a trial").trial
 }

@@ -29,7 +29,7 @@ pub fn estimated_current(trial: &Trial) -> Option<Current> {
     let turn = HeldTurn::from_trial(trial)?;
     let (north, east) = (trial.channel(Channel::North)?, trial.channel(Channel::East)?);
     let has_position = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
-    let is_turning = |row: &usize| (turn.execute..=turn.until).contains(&trial.time()[*row]);
+    let is_turning = |row: &usize| (turn.execute_time..=turn.end_time).contains(&trial.time()[*row]);
     let rows: Vec<usize> = trial.observed_rows().filter(has_position).filter(is_turning).collect();
     let at_rows = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
@@ -63,15 +63,15 @@ pub struct HeldTurn {
     /// Time of the first row of the record.
     start: f64,
     /// Time of the execute.
-    pub execute: f64,
+    pub execute_time: f64,
     /// End of the held rudder.
-    pub until: f64,
+    pub end_time: f64,
     /// Side of the rudder, ±1.
     pub side: f64,
     /// Maximum rudder angle to that side, rad.
-    pub rudder: f64,
+    pub max_rudder: f64,
     /// Rudder angle before the execute, rad.
-    pub before: f64,
+    pub rudder_before: f64,
 }
 
 impl HeldTurn {
@@ -90,17 +90,17 @@ impl HeldTurn {
         }
         Some(Self {
             start: trial.time()[0],
-            execute: times[first.saturating_sub(1)],
-            until: times[until],
+            execute_time: times[first.saturating_sub(1)],
+            end_time: times[until],
             side,
-            rudder: (largest + values[0]) * side,
-            before: values[0],
+            max_rudder: (largest + values[0]) * side,
+            rudder_before: values[0],
         })
     }
 
     /// Duration from the first row to the execute, s.
     pub(crate) fn approach_duration(&self) -> f64 {
-        self.execute - self.start
+        self.execute_time - self.start
     }
 
     /// Row of the execute.
@@ -115,7 +115,7 @@ impl HeldTurn {
 
     /// Characteristics of a turn up to the end of the recorded turn.
     pub(crate) fn characteristics_within_record(&self, passage: &SimulatedManoeuvre) -> Characteristics {
-        self.characteristics_to_end(&passage.until(self.until - self.start))
+        self.characteristics_to_end(&passage.until(self.end_time - self.start))
     }
 
     /// Characteristics of a turn up to its end; the clock starts with the record.
@@ -147,9 +147,9 @@ impl HeldTurn {
 
     /// Rudder of the record up to the end of the turn, and held from there; `None` if the signal begins after that end.
     pub(crate) fn extended_rudder(&self, signal: &Polyline) -> Option<Polyline> {
-        let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
+        let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.end_time).collect();
         let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
-        times.push(self.until + EXTENSION * (self.until - self.execute));
+        times.push(self.end_time + EXTENSION * (self.end_time - self.execute_time));
         values.push(*values.last()?);
         Polyline::new(times, values).ok()
     }
@@ -273,7 +273,7 @@ mod tests {
         let rudder = time.iter().map(|t| if *t < 20.0 { 0.0 } else { 0.35 }).collect();
         let channels =
             [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::North, north), (Channel::East, east)];
-        let columns = Columns { time, channels: channels.into(), unknown: Vec::new() };
+        let columns = Columns { time, channels: channels.into(), unknown_columns: Vec::new() };
         let trial =
             Trial::new("circle", RecordOrigin::Measured { file: "made up".into(), sha256: String::new() }, columns);
         let trial = trial.expect("a record");

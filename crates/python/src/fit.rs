@@ -14,7 +14,7 @@ use trial::Trial;
 use crate::curve::{ReplayArrays, replay_arrays};
 use crate::earlier::{NamedModel, earlier_models};
 use crate::python_method::{PyIdentifier, PythonMethods};
-use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::record::{PyRecord, cloned_trials, read_warnings, warning_texts};
 use crate::wait::run_in_background;
 
 /// Result of a fit, with the records and estimates for its figures.
@@ -39,8 +39,9 @@ impl PyFit {
         self.trials.get(place).cloned().map(PyRecord::from_trial)
     }
 
-    /// Replay of a record by the estimate of a method; `None` without this record or this method, if the method gives
-    /// no estimate, or if the replay is not finite.
+    /// Replay of record number `place` (from 0, fitted records first) by the estimate of the method with the identifier
+    /// or label `method`; `None` without this record or this method, if the method gives no estimate, or if the replay
+    /// is not finite.
     fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<ReplayArrays<'py>> {
         let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
         Some(replay_arrays(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
@@ -61,7 +62,7 @@ pub fn fit(
 ) -> PyResult<PyFit> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
-    let (records, validation) = (trials(&records), trials(&validate));
+    let (records, validation) = (cloned_trials(&records), cloned_trials(&validate));
     run_in_background(py, move || {
         let priors = earlier_models(&priors)?;
         let mut methods = work::fit::labelled_methods(&methods, seed)?;

@@ -11,7 +11,7 @@ use study::work::predict::{self as work, PredictInput, StoredModel};
 
 use crate::earlier::{NamedModel, earlier_models};
 use crate::options::parse_request;
-use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::record::{PyRecord, cloned_trials, read_warnings, warning_texts};
 use crate::wait::run_in_background;
 
 /// JSON document of a prediction, and warnings. `models` are file names, or names with a text; `replay` are records to
@@ -26,7 +26,7 @@ pub fn predict(
 ) -> PyResult<(String, Vec<String>)> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&replay).collect();
-    let records = trials(&replay);
+    let records = cloned_trials(&replay);
     run_in_background(py, move || {
         let names = models.iter().map(|model| model.name.clone());
         let mut asked: PredictRequest =
@@ -40,8 +40,14 @@ pub fn predict(
         let models: Vec<StoredModel> = models.iter().map(read).collect::<Result<_, _>>()?;
         warnings.extend(reading.iter().cloned());
         let earlier = earlier_models(&priors)?;
-        let input =
-            PredictInput { models: &models, earlier: &earlier, ballast: &[], records, current: None, declared: None };
+        let input = PredictInput {
+            models: &models,
+            earlier_models: &earlier,
+            ballast_models: &[],
+            records,
+            current: None,
+            declared_conditions: None,
+        };
         let predicted = work::predict(&asked, input, true, &mut warnings)?;
         let warnings = warning_texts(predicted.warnings.iter().filter(|warning| !reading.contains(warning)));
         Ok((documents::to_json(&predicted).map_err(Failure::execution)?, warnings))

@@ -16,7 +16,7 @@ create_exception!(kempf, WorkError, PyRuntimeError, "The work could not be done,
 create_exception!(kempf, KempfWarning, PyUserWarning, "A remark on a record or a result, which remains valid.");
 
 /// Python exception for a failure.
-pub fn raised(failure: Failure) -> PyErr {
+pub fn python_error(failure: Failure) -> PyErr {
     match failure.kind {
         FailureKind::Input => KempfError::new_err(failure.message),
         FailureKind::Work | FailureKind::Interrupted => WorkError::new_err(failure.message),

@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use study::options::ReadingOptions;
 use study::records::{file_and_hash, read_records, record_files, trial_from_log, warning_source};
 use trial::channel::TIME_COLUMN;
-use trial::{Channel, Log, Sidecar, Trial};
+use trial::{Channel, InstrumentLog, Sidecar, Trial};
 
 use crate::options::parse_request;
-use crate::raise::raised;
+use crate::raise::python_error;
 use crate::wait::run_in_background;
 
 /// Record of one trial, with the warnings of its reading.
@@ -42,7 +42,7 @@ pub fn warning_texts<'a>(warnings: impl IntoIterator<Item = &'a Warning>) -> Vec
 }
 
 /// Trials of the records passed from Python.
-pub fn trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
+pub fn cloned_trials(records: &[Py<PyRecord>]) -> Vec<Trial> {
     records.iter().map(|record| record.get().trial.clone()).collect()
 }
 
@@ -116,8 +116,8 @@ impl PyRecord {
     /// CSV text of the record.
     fn csv(&self) -> PyResult<String> {
         let mut table = Vec::new();
-        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::execution(error)))?;
-        String::from_utf8(table).map_err(|error| raised(Failure::execution(error)))
+        trial::write_csv(&self.trial, &mut table).map_err(|error| python_error(Failure::execution(error)))?;
+        String::from_utf8(table).map_err(|error| python_error(Failure::execution(error)))
     }
 }
 
@@ -152,7 +152,7 @@ pub fn record_of(
     columns: Vec<(String, PyColumn<'_>)>,
     options: Vec<String>,
 ) -> PyResult<PyRecord> {
-    let table = table(&columns).map_err(raised)?;
+    let table = table(&columns).map_err(python_error)?;
     run_in_background(py, move || record_from_table(&name, &table, &parse_request(options)?, None))
 }
 
@@ -165,9 +165,9 @@ pub fn record_from_table(
 ) -> Result<PyRecord, Failure> {
     let path = PathBuf::from(format!("{name}.csv"));
     name::study_name(&path)?;
-    let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
+    let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::path_beside(&path))).transpose();
     let sidecar = sidecar.map_err(Failure::input)?;
-    let mut log = Log::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
+    let mut log = InstrumentLog::from_reader(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
     let mut warnings = Warnings::default();
     warnings.extend(warning_source(&path).attach_to(std::mem::take(&mut log.warnings)));
     let trial = trial_from_log(log, &path, options, &mut warnings)?;

@@ -8,14 +8,14 @@ use campaign::Observer;
 use campaign::collect::collect;
 use campaign::failure::Failure;
 use campaign::folder::ResultFolder;
-use campaign::shard::default_folder;
+use campaign::shard::default_result_folder;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use study::options::{FigureChoice, FigureOptions, MAX_THREADS};
 use study::views::publish;
 
-use crate::raise::raised;
+use crate::raise::python_error;
 use crate::scene::ScenarioInput;
 use crate::wait::BackgroundWork;
 
@@ -91,7 +91,7 @@ fn study(
 ) -> Result<String, Failure> {
     let scenario = scene.read(seed)?;
     let theme = FigureOptions { paper: None, dpi: 600.0, style: None }.theme()?;
-    let folder = ResultFolder::make(&out.unwrap_or_else(|| default_folder(&scenario.name)))?;
+    let folder = ResultFolder::make(&out.unwrap_or_else(|| default_result_folder(&scenario.name)))?;
     let stored = collect(&scenario, &folder, restart, observer)?;
     let publish = || publish::write_files(&stored, &folder, &theme, FigureChoice::Named);
     let summary = match &observer.threads {
@@ -114,7 +114,7 @@ pub fn run(
     restart: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Vec<String>, Vec<String>)> {
-    let threads = threads.map(pool).transpose().map_err(raised)?;
+    let threads = threads.map(pool).transpose().map_err(python_error)?;
     let observer = Arc::new(WorkObserver { threads, ..WorkObserver::default() });
     let shared = Arc::clone(&observer);
     let text = run_observed(py, &observer, progress.as_ref(), move || study(&scene, out, seed, restart, &shared))?;

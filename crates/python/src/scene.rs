@@ -7,7 +7,7 @@ use campaign::scenario::Scenario;
 use pyo3::prelude::*;
 use serde_json::Value;
 
-use crate::raise::raised;
+use crate::raise::python_error;
 
 /// Scenario as passed from Python.
 #[derive(FromPyObject)]
@@ -37,8 +37,10 @@ impl ScenarioInput {
 /// TOML text of a JSON document. Fails if the document has no form in TOML.
 #[pyfunction]
 pub fn toml_of(json: &str) -> PyResult<String> {
-    let value: Value = serde_json::from_str(json).map_err(|error| raised(Failure::input(error)))?;
+    let value: Value = serde_json::from_str(json).map_err(|error| python_error(Failure::input(error)))?;
     toml::to_string(&value).map_err(|error| {
-        raised(Failure::input(format!("the scenario cannot be written as TOML: {error}; leave out keys that are None")))
+        python_error(Failure::input(format!(
+            "the scenario cannot be written as TOML: {error}; leave out keys that are None"
+        )))
     })
 }

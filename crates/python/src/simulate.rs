@@ -27,8 +27,8 @@ pub fn simulate(
         let replicate = replicate.map_or(Replicates::All, Replicates::One);
         let asked = SimulateRequest { scenario: scene.path().to_owned(), cell, replicate };
         let whole = parse_request(Vec::new())?;
-        let read = |RecordFiles { name, table, sidecar, truth }: RecordFiles| {
-            Ok((record_from_table(&name, &table, &whole, sidecar.as_deref())?, truth))
+        let read = |RecordFiles { name, record_csv, sidecar_toml, truth_json }: RecordFiles| {
+            Ok((record_from_table(&name, &record_csv, &whole, sidecar_toml.as_deref())?, truth_json))
         };
         let trials = requested_trials(&scenario, &asked)?.into_par_iter().map(|task| {
             simulate_record_files(&scenario, task, &record_name(&scenario, task))?.into_iter().map(read).collect()

@@ -11,7 +11,7 @@ use study::work;
 use crate::curve::{ReplayArrays, replay_arrays};
 use crate::earlier::{NamedModel, earlier_models};
 use crate::options::parse_request;
-use crate::record::{PyRecord, read_warnings, trials, warning_texts};
+use crate::record::{PyRecord, cloned_trials, read_warnings, warning_texts};
 use crate::wait::run_in_background;
 
 /// Result of a trace, with the records and replays for its figures.
@@ -52,7 +52,7 @@ pub fn trace(
 ) -> PyResult<PyTrace> {
     // The document contains the warnings of reading, as on the command line; Python has already issued them.
     let reading: Vec<Warning> = read_warnings(&records).chain(read_warnings(&validate)).collect();
-    let (records, validation) = (trials(&records), trials(&validate));
+    let (records, validation) = (cloned_trials(&records), cloned_trials(&validate));
     run_in_background(py, move || {
         // The command line requires the name of a record; the records themselves are passed separately.
         let asked: TraceRequest = parse_request([options, vec![String::from("record")]].concat())?;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use campaign::failure::Failure;
 use pyo3::prelude::*;
 
-use crate::raise::raised;
+use crate::raise::python_error;
 
 /// Polling interval for signals.
 const LOOK: Duration = Duration::from_millis(50);
@@ -25,7 +25,7 @@ impl<T: Send + 'static> BackgroundWork<T> {
         // The receiver no longer exists if the wait was abandoned.
         let run = move || drop(send.send(work()));
         let thread = thread::Builder::new().name("kempf".into()).stack_size(STACK).spawn(run);
-        thread.map_err(|error| raised(Failure::execution(format!("failed to start a thread: {error}"))))?;
+        thread.map_err(|error| python_error(Failure::execution(format!("failed to start a thread: {error}"))))?;
         Ok(Self(receive))
     }
 
@@ -34,10 +34,10 @@ impl<T: Send + 'static> BackgroundWork<T> {
     pub fn wait(&mut self, py: Python<'_>) -> Option<PyResult<T>> {
         let receive = &mut self.0;
         match py.detach(move || receive.recv_timeout(LOOK)) {
-            Ok(done) => Some(done.map_err(raised)),
+            Ok(done) => Some(done.map_err(python_error)),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
-                Some(Err(raised(Failure::execution("internal error; details are on standard error"))))
+                Some(Err(python_error(Failure::execution("internal error; details are on standard error"))))
             }
         }
     }

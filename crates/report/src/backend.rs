@@ -19,7 +19,7 @@ use plotters_backend::{
 use crate::changes::StyleChanges;
 use crate::fonts::{FAMILY_WITH_FALLBACK, LINE_SPACING, text_width};
 use crate::markup::{is_markup, runs};
-use crate::palette::PAPER;
+use crate::palette::BACKGROUND;
 use crate::printable::is_printable;
 pub(crate) use crate::svg_group::{Bounds, SvgGroup};
 
@@ -103,7 +103,7 @@ impl Svg {
         let mut document = self.document.borrow_mut();
         document.close_group();
         let (across, down) = (self.width, units(height).max(1));
-        let paper = document.colour(PAPER.to_backend_color());
+        let paper = document.colour(BACKGROUND.to_backend_color());
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.3}pt\" height=\"{height:.3}pt\" \
              viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" stroke-linejoin=\"bevel\">\n\
@@ -155,7 +155,7 @@ impl SvgDocument {
             let _ = write!(attributes, " stroke-dasharray=\"{}\"", parts.join(" "));
         }
         if let Some(width) = group.halo {
-            let (paper, width) = (self.colour(PAPER.to_backend_color()), units(2.0 * width));
+            let (paper, width) = (self.colour(BACKGROUND.to_backend_color()), units(2.0 * width));
             let _ = write!(
                 attributes,
                 " stroke=\"{paper}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\""

@@ -9,7 +9,7 @@ use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform
 
 use crate::backend::{PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::fonts::{FAMILY, text_width};
-use crate::palette::{CurveStyle, Dash, INK, Marker, PAPER, SOLID};
+use crate::palette::{BACKGROUND, CurveStyle, Dash, INK, Marker, SOLID};
 
 /// Place on the page, points from the upper left corner.
 pub(crate) type PagePoint = (f64, f64);
@@ -212,7 +212,8 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, style: &CurveStyle)
         let shape_style = Stroke::solid(style.colour, 0.55 * radius).style();
         (EmptyElement::at(at.clone()) + PathElement::new(ends.to_vec(), shape_style)).into_dyn()
     };
-    let strokes = |lines: [[(f64, f64); 2]; 2]| [circle(1.1, PAPER)].into_iter().chain(lines.map(stroke)).collect();
+    let strokes =
+        |lines: [[(f64, f64); 2]; 2]| [circle(1.1, BACKGROUND)].into_iter().chain(lines.map(stroke)).collect();
     let corners: &[(f64, f64)] = match style.marker {
         Marker::Plus => return strokes([[(-1.1, 0.0), (1.1, 0.0)], [(0.0, -1.1), (0.0, 1.1)]]),
         Marker::Cross => return strokes([[(-0.9, -0.9), (0.9, 0.9)], [(-0.9, 0.9), (0.9, -0.9)]]),
@@ -223,8 +224,8 @@ pub(crate) fn marker<C: Clone + 'static>(at: C, radius: f64, style: &CurveStyle)
         Marker::Diamond => &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)],
         Marker::Star => &STAR,
     };
-    let hole = style.hollow.then(|| shape(0.52, PAPER, corners));
-    [shape(1.25, PAPER, corners), shape(1.0, style.colour, corners)].into_iter().chain(hole).collect()
+    let hole = style.is_hollow.then(|| shape(0.52, BACKGROUND, corners));
+    [shape(1.25, BACKGROUND, corners), shape(1.0, style.colour, corners)].into_iter().chain(hole).collect()
 }
 
 /// Elements of a ship seen from above, `length` points long, with her bow along the unit vector `(dx, dy)`; a white
@@ -242,5 +243,5 @@ pub(crate) fn ship_outline<C: Clone + 'static>(
         });
         polygon(&at, turned, colour)
     };
-    vec![outline(0.58 * length, 1.25, PAPER), outline(0.5 * length, 1.0, colour)]
+    vec![outline(0.58 * length, 1.25, BACKGROUND), outline(0.5 * length, 1.0, colour)]
 }

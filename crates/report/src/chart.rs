@@ -12,7 +12,7 @@ use crate::axis::Axis;
 use crate::backend::{Bounds, PlotResult, Svg, SvgGroup, UNITS_PER_POINT, units};
 use crate::canvas::{Canvas, Element, PagePoint, Rect, Stroke, marker};
 use crate::curve::PlotCurve;
-use crate::palette::{CurveStyle, INK, PAPER};
+use crate::palette::{BACKGROUND, CurveStyle, INK};
 use crate::theme::Theme;
 
 /// Chart of plotters with two axes, drawn as SVG.
@@ -219,7 +219,7 @@ impl Chart {
                 let (x, y) = (centre.0 + side * size * along.0, centre.1 + side * size * along.1);
                 [(x - dx, y + dy), (x + dx, y - dy)]
             });
-            self.canvas.fill(&[one[0], one[1], other[1], other[0]], PAPER, 1.0)?;
+            self.canvas.fill(&[one[0], one[1], other[1], other[0]], BACKGROUND, 1.0)?;
             [one, other].iter().try_for_each(|ends| self.canvas.line(ends, stroke))?;
         }
         Ok(())

@@ -64,7 +64,7 @@ pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
 
 /// `(1.23 ± 0.04)×10⁻⁵` for a magnitude below 0.001 or from 100,000 on, unless it is zero; otherwise as
 /// [`with_uncertainty`].
-pub fn uncertain(value: f64, sd: Option<f64>) -> String {
+pub fn with_uncertainty_and_power(value: f64, sd: Option<f64>) -> String {
     if value != 0.0 && value.is_finite() && !(1e-3..1e5).contains(&value.abs()) {
         let exponent = value.abs().log10().floor() as i32;
         let unit = 10f64.powi(exponent);
@@ -140,9 +140,9 @@ mod tests {
 
     #[test]
     fn a_value_of_any_size_has_its_power_of_ten() {
-        assert_eq!(uncertain(1.234e-5, Some(4e-7)), "(1.23 ± 0.04)×10⁻⁵");
-        assert_eq!(uncertain(0.1, Some(0.01)), with_uncertainty(0.1, Some(0.01)));
-        assert_eq!(uncertain(f64::INFINITY, None), with_uncertainty(f64::INFINITY, None));
+        assert_eq!(with_uncertainty_and_power(1.234e-5, Some(4e-7)), "(1.23 ± 0.04)×10⁻⁵");
+        assert_eq!(with_uncertainty_and_power(0.1, Some(0.01)), with_uncertainty(0.1, Some(0.01)));
+        assert_eq!(with_uncertainty_and_power(f64::INFINITY, None), with_uncertainty(f64::INFINITY, None));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! `##~ Title` begins a part that a browser shows on request.
 
 use crate::figures::Plot;
-use crate::markdown::{prose, text};
+use crate::markdown::{escaped_text, html_escaped_prose};
 
 /// Figure of a page.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,7 +32,7 @@ impl PageFigure {
 
     /// Figure with its number, as Markdown.
     fn to_markdown(&self, number: usize) -> String {
-        let (finding, caption) = (text(&self.finding), text(&self.caption));
+        let (finding, caption) = (escaped_text(&self.finding), escaped_text(&self.caption));
         format!("![Figure {number}]({}.png)\n\n*Figure {number}. {finding}. {caption}*", self.stem)
     }
 }
@@ -51,7 +51,7 @@ impl<P: PartialEq> PlacedFigures<P> {
     }
 
     /// `true` if a place has a figure.
-    pub fn has(&self, place: P) -> bool {
+    pub fn has_figure_at(&self, place: P) -> bool {
         self.0.iter().any(|(other, _)| *other == place)
     }
 
@@ -83,7 +83,7 @@ impl Page {
     ///
     /// If the template was not filled in, which cannot happen if all its values can be written into a string.
     pub fn new(filled: askama::Result<String>, figures: PlacedFigures<impl Sized>) -> Self {
-        let filled = prose(&filled.expect("writing to a string does not fail"));
+        let filled = html_escaped_prose(&filled.expect("writing to a string does not fail"));
         let mut folded = Vec::new();
         let mut blocks = Vec::new();
         for block in filled.split("\n\n").map(|block| block.trim_matches('\n')).filter(|block| !block.trim().is_empty())
@@ -132,7 +132,7 @@ impl Page {
     /// interpreted.
     pub fn to_markdown(&self) -> String {
         let block = |block: &String| match self.figure(block) {
-            Some((place, figure)) => prose(&figure.to_markdown(place + 1)),
+            Some((place, figure)) => html_escaped_prose(&figure.to_markdown(place + 1)),
             None => block.clone(),
         };
         self.blocks.iter().map(block).collect::<Vec<String>>().join("\n\n") + "\n"
@@ -164,7 +164,7 @@ mod tests {
         let figures = PlacedFigures([("b", figure("fit")), ("c", figure("nowhere")), ("a", figure("last"))].to_vec());
         let [first, next] = ["a", "b"].map(|place| figures.marks_at(place));
         let filled = format!("# Trial\n\n\n\n{first}\n<b>c\n{next}##~ Numbers\n\n- one\n- two\n![none]\n");
-        assert!(figures.has("c") && !figures.has("d"));
+        assert!(figures.has_figure_at("c") && !figures.has_figure_at("d"));
         let page = Page::new(Ok(filled), figures);
         let markdown = "# Trial\n\n![Figure 1](last.png)\n\n*Figure 1. K is 0.1. a\\*b*\n\n\\<b>c\n\n![Figure 2](fit.png)\n\n\
                         *Figure 2. K is 0.1. a\\*b*\n\n## Numbers\n\n- one\n- two\n![none]\n";

@@ -65,7 +65,7 @@ impl CurveOrigin {
             Self::Truth => CurveStyle::new(INK, Marker::Circle, SOLID),
             Self::Published => CurveStyle::new(RECORD, Marker::Cross, DASHED),
             Self::Bound => CurveStyle::new(INK, Marker::Plus, DOTTED),
-            Self::Before => CurveStyle::new(BEFORE, Marker::Square, DASHED),
+            Self::Before => CurveStyle::new(MODEL_BEFORE, Marker::Square, DASHED),
             Self::After => CurveStyle::new(HEADING, Marker::Circle, SOLID),
             Self::Method(id) => method_style(id),
             Self::Variant { method, number, .. } => variant_style(method, *number),
@@ -99,19 +99,19 @@ pub const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
 /// Colour of the record.
 pub const RECORD: RGBColor = RGBColor(0x77, 0x77, 0x77);
 /// Colour of data that are not highlighted.
-pub const QUIET: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
+pub const UNHIGHLIGHTED: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
 /// Colour of grid lines.
 pub const GRID: RGBColor = RGBColor(0xE2, 0xE2, 0xE2);
 /// Colour of the background.
-pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
+pub const BACKGROUND: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
 /// Colour of the heading in a figure without methods.
 pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 /// Colour of the rudder.
 pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
 /// Colour of a model before an addition.
-pub const BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
+pub const MODEL_BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
 /// Colour of dimension lines and their numbers.
-pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
+pub const DIMENSION_LINE: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,12 +144,12 @@ pub struct CurveStyle {
     /// Pattern of the line.
     pub dash: Dash,
     /// `true` if the marker is an outline only.
-    pub hollow: bool,
+    pub is_hollow: bool,
 }
 
 impl CurveStyle {
     const fn new(colour: RGBColor, marker: Marker, dash: Dash) -> Self {
-        Self { colour, marker, dash, hollow: false }
+        Self { colour, marker, dash, is_hollow: false }
     }
 }
 
@@ -201,7 +201,7 @@ fn variant_style(method: &str, number: usize) -> CurveStyle {
             RGBColor(shade(red), shade(green), shade(blue))
         }
     };
-    CurveStyle { marker, dash, hollow: true, colour }
+    CurveStyle { marker, dash, is_hollow: true, colour }
 }
 
 /// Style of a series: a grey, so that it does not look like a method, and marker and dash by its number.
@@ -210,7 +210,7 @@ fn series_style(number: usize) -> CurveStyle {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [SOLID, SHORT_DASH, DOTTED, DASH_DOT];
     CurveStyle {
-        hollow: number % 2 == 1,
+        is_hollow: number % 2 == 1,
         ..CurveStyle::new(SHADES[number % SHADES.len()], MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()])
     }
 }
@@ -221,7 +221,7 @@ fn method_style(id: &str) -> CurveStyle {
     // A trace and the rule that chooses a method are not in the list of methods, but are shown with them.
     match id {
         "trace" => return CurveStyle::new(INK, Marker::Square, SOLID),
-        "recommended" => return CurveStyle { hollow: true, ..CurveStyle::new(BROWN, Marker::Diamond, DASHED) },
+        "recommended" => return CurveStyle { is_hollow: true, ..CurveStyle::new(BROWN, Marker::Diamond, DASHED) },
         _ => {}
     }
     if let Some((_, style)) = METHODS.iter().find(|(method, _)| *method == id) {
@@ -268,6 +268,6 @@ mod tests {
     fn unknown_method_has_a_stable_hollow_style() {
         let style = CurveOrigin::Method("ridge".into()).style();
         assert_eq!(style, CurveOrigin::Method("ridge".into()).style());
-        assert!(style.hollow);
+        assert!(style.is_hollow);
     }
 }

@@ -7,7 +7,9 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::changes::{StyleChanges, colour};
-use crate::palette::{BEFORE, CurveOrigin, DIMENSION, GRID, HEADING, INK, PAPER, RECORD, RUDDER, method_ids};
+use crate::palette::{
+    BACKGROUND, CurveOrigin, DIMENSION_LINE, GRID, HEADING, INK, MODEL_BEFORE, RECORD, RUDDER, method_ids,
+};
 use crate::theme::Theme;
 use plotters::style::RGBColor;
 
@@ -94,13 +96,13 @@ pub enum StyleError {
 fn coloured() -> impl Iterator<Item = (&'static str, RGBColor)> {
     let parts = [
         ("ink", INK),
-        ("paper", PAPER),
+        ("paper", BACKGROUND),
         ("grid", GRID),
         ("record", RECORD),
         ("heading", HEADING),
         ("rudder", RUDDER),
-        ("before", BEFORE),
-        ("dimension", DIMENSION),
+        ("before", MODEL_BEFORE),
+        ("dimension", DIMENSION_LINE),
     ];
     parts.into_iter().chain(method_ids().map(|id| (id, CurveOrigin::Method(id.to_owned()).style().colour)))
 }

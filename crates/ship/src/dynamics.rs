@@ -17,24 +17,24 @@ pub struct MeasuredChannels {
     /// Direction the relative wind comes from, clockwise from the bow, rad.
     pub wind_from: Option<f64>,
     /// Propeller rate of revolution n, 1/s; `None` if not measured.
-    pub propeller: Option<f64>,
+    pub propeller_rate: Option<f64>,
 }
 
 impl MeasuredChannels {
     /// `true` if this channel was measured; for the wind, both its speed and its direction.
-    pub fn has(&self, channel: Regressor) -> bool {
+    pub fn has(&self, channel: RegressorChannel) -> bool {
         match channel {
-            Regressor::Speed => self.speed.is_some(),
-            Regressor::Sway => self.sway.is_some(),
-            Regressor::Wind => self.wind_speed.is_some() && self.wind_from.is_some(),
-            Regressor::Propeller => self.propeller.is_some(),
+            RegressorChannel::Speed => self.speed.is_some(),
+            RegressorChannel::Sway => self.sway.is_some(),
+            RegressorChannel::Wind => self.wind_speed.is_some() && self.wind_from.is_some(),
+            RegressorChannel::Propeller => self.propeller_rate.is_some(),
         }
     }
 }
 
 /// Kind of a channel of [`MeasuredChannels`], a possible regressor of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Regressor {
+pub enum RegressorChannel {
     /// Speed through the water.
     Speed,
     /// Sway velocity.
@@ -45,7 +45,7 @@ pub enum Regressor {
     Propeller,
 }
 
-impl Regressor {
+impl RegressorChannel {
     /// Error message for a record without this channel.
     pub fn missing_message(self) -> &'static str {
         match self {
@@ -59,11 +59,11 @@ impl Regressor {
 
 /// Input of a ship at one instant: rudder, disturbance and measured channels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Input<R = f64> {
+pub struct ShipInput<R = f64> {
     /// Acting rudder angle after the dead time, rad; positive turns to starboard.
     pub rudder: R,
     /// Yaw disturbance as equivalent rudder angle (same yaw moment at approach speed), rad.
-    pub disturbance: f64,
+    pub disturbance_rudder: f64,
     /// Measured channels that effects may use as regressors.
     pub measured: MeasuredChannels,
 }
@@ -97,15 +97,15 @@ pub trait Dynamics<R: Real = f64>: Send + Sync {
     fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
     /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
-    fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]);
+    fn rates(&self, t: f64, state: &[R], input: &ShipInput<R>, rate: &mut [R]);
 
     /// Update of memory that follows no differential equation (backlash), once at the end of every step.
     ///
     /// The rudder is monotone between two calls: a step ends at every corner of the rudder signal.
-    fn update_memory(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
+    fn update_memory(&self, _t: f64, _state: &mut [R], _input: &ShipInput<R>) {}
 
     /// Motion at time `t` (s) in this state, with this input.
-    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;
+    fn motion(&self, t: f64, state: &[R], input: &ShipInput<R>) -> Motion;
 
     /// Dead time from the rudder signal to the acting rudder, s; negative if the clock of the recorded rudder is late.
     fn dead_time(&self) -> R {

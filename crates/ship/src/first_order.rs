@@ -40,7 +40,7 @@ impl FirstOrder {
 
 /// Heading and yaw rate of a first-order ship.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct State {
+pub struct YawState {
     /// Heading ψ, rad.
     pub heading: f64,
     /// Yaw rate r, rad/s.
@@ -52,9 +52,9 @@ pub struct State {
 /// r(h) = e r₀ + φ₁ u₀ + φ₂ u', ψ(h) = ψ₀ + φ₁ r₀ + φ₂ u₀ + φ₃ u', where e = exp(−a h) and
 /// φₙ(h) = ∫₀ʰ φₙ₋₁, φ₀ = exp(−a t). Regular at a = 0; h may be negative (a step back in time).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Transition {
+pub struct FirstOrderTransition {
     /// Duration of the interval, s.
-    pub h: f64,
+    pub time_step: f64,
     /// exp(−a h).
     pub decay: f64,
     /// φ₁, s.
@@ -90,17 +90,17 @@ fn tails(x: f64) -> (f64, [f64; 4]) {
     }
 }
 
-impl Transition {
+impl FirstOrderTransition {
     /// Transition over `h` seconds for a = `inverse_T` (1/s).
     pub fn new(inverse_T: f64, h: f64) -> Self {
         let (decay, [f1, f2, f3, _]) = tails(inverse_T * h);
-        Self { h, decay, phi1: h * f1, phi2: h * h * f2, phi3: h * h * h * f3 }
+        Self { time_step: h, decay, phi1: h * f1, phi2: h * h * f2, phi3: h * h * h * f3 }
     }
 
     /// State after the interval, for the input u₀ + u' t (rad/s², rad/s³).
     #[inline]
-    pub fn advance(&self, state: State, u0: f64, slope: f64) -> State {
-        State {
+    pub fn advance(&self, state: YawState, u0: f64, slope: f64) -> YawState {
+        YawState {
             // The input terms are summed first: they are independent of the state, which shortens the chain of
             // operations.
             heading: state.heading + (self.phi1 * state.yaw_rate + (self.phi2 * u0 + self.phi3 * slope)),
@@ -109,13 +109,13 @@ impl Transition {
     }
 }
 
-/// [`Transition`] with its derivative with respect to a, for exact sensitivities of the response to 1/T.
+/// [`FirstOrderTransition`] with its derivative with respect to a, for exact sensitivities of the response to 1/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentTransition {
     /// Transition.
-    pub value: Transition,
+    pub value: FirstOrderTransition,
     /// Derivative with respect to a = 1/T (`h` holds no derivative and is zero).
-    pub by_inverse_T: Transition,
+    pub by_inverse_T: FirstOrderTransition,
 }
 
 impl TangentTransition {
@@ -125,9 +125,9 @@ impl TangentTransition {
         // fₙ' = n fₙ₊₁ − fₙ, and ∂φₙ/∂a = h^(n+1) fₙ'.
         let h2 = h * h;
         Self {
-            value: Transition { h, decay, phi1: h * f1, phi2: h2 * f2, phi3: h2 * h * f3 },
-            by_inverse_T: Transition {
-                h: 0.0,
+            value: FirstOrderTransition { time_step: h, decay, phi1: h * f1, phi2: h2 * f2, phi3: h2 * h * f3 },
+            by_inverse_T: FirstOrderTransition {
+                time_step: 0.0,
                 decay: -h * decay,
                 phi1: h2 * (f2 - f1),
                 phi2: h2 * h * (2.0 * f3 - f2),
@@ -138,9 +138,9 @@ impl TangentTransition {
 
     /// Sensitivity (∂ψ/∂a, ∂r/∂a) after the interval, from `state` and its sensitivity before the interval.
     #[inline]
-    pub fn advance(&self, state: State, sensitivity: State, u0: f64, slope: f64) -> State {
+    pub fn advance(&self, state: YawState, sensitivity: YawState, u0: f64, slope: f64) -> YawState {
         let (f, d) = (&self.value, &self.by_inverse_T);
-        State {
+        YawState {
             heading: sensitivity.heading
                 + (f.phi1 * sensitivity.yaw_rate + (d.phi1 * state.yaw_rate + (d.phi2 * u0 + d.phi3 * slope))),
             yaw_rate: f.decay * sensitivity.yaw_rate + (d.decay * state.yaw_rate + (d.phi1 * u0 + d.phi2 * slope)),
@@ -160,7 +160,8 @@ mod tests {
         let ship = FirstOrder::from_indices(K, T, 0.0);
         let A = K * delta;
         for t in [0.1, 1.0, 16.3, 200.0] {
-            let end = Transition::new(ship.inverse_T, t).advance(State::default(), ship.K_over_T * delta, 0.0);
+            let end =
+                FirstOrderTransition::new(ship.inverse_T, t).advance(YawState::default(), ship.K_over_T * delta, 0.0);
             assert_relative_eq!(end.yaw_rate, A * (1.0 - (-t / T).exp()), max_relative = 1e-12);
             assert_relative_eq!(end.heading, A * (t - T * (1.0 - (-t / T).exp())), max_relative = 1e-11);
         }
@@ -169,17 +170,17 @@ mod tests {
     #[test]
     fn one_step_equals_many_for_any_sign_of_T() {
         for a in [0.3, 0.061, 1e-9, 0.0, -1e-9, -0.02, -0.3] {
-            let start = State { heading: 0.1, yaw_rate: -0.01 };
+            let start = YawState { heading: 0.1, yaw_rate: -0.01 };
             let (u0, slope, t) = (2e-3, 3e-4, 7.0);
-            let once = Transition::new(a, t).advance(start, u0, slope);
-            let piece = Transition::new(a, t / 70.0);
+            let once = FirstOrderTransition::new(a, t).advance(start, u0, slope);
+            let piece = FirstOrderTransition::new(a, t / 70.0);
             let mut many = start;
             for k in 0..70 {
-                many = piece.advance(many, u0 + slope * k as f64 * piece.h, slope);
+                many = piece.advance(many, u0 + slope * k as f64 * piece.time_step, slope);
             }
             assert_relative_eq!(once.heading, many.heading, max_relative = 1e-12);
             assert_relative_eq!(once.yaw_rate, many.yaw_rate, max_relative = 1e-12);
-            let back = Transition::new(a, -t).advance(once, u0 + slope * t, slope);
+            let back = FirstOrderTransition::new(a, -t).advance(once, u0 + slope * t, slope);
             assert_relative_eq!(back.heading, start.heading, max_relative = 1e-9);
         }
     }
@@ -187,12 +188,12 @@ mod tests {
     #[test]
     fn sensitivity_is_the_derivative() {
         for a in [0.3, 0.061, 0.0, -0.05] {
-            let start = State { heading: 0.1, yaw_rate: -0.01 };
+            let start = YawState { heading: 0.1, yaw_rate: -0.01 };
             let (u0, slope, h) = (2e-3, 3e-4, 3.0);
             let da = 1e-6;
-            let hi = Transition::new(a + da, h).advance(start, u0, slope);
-            let lo = Transition::new(a - da, h).advance(start, u0, slope);
-            let exact = TangentTransition::new(a, h).advance(start, State::default(), u0, slope);
+            let hi = FirstOrderTransition::new(a + da, h).advance(start, u0, slope);
+            let lo = FirstOrderTransition::new(a - da, h).advance(start, u0, slope);
+            let exact = TangentTransition::new(a, h).advance(start, YawState::default(), u0, slope);
             assert_relative_eq!(exact.heading, (hi.heading - lo.heading) / (2.0 * da), max_relative = 1e-7);
             assert_relative_eq!(exact.yaw_rate, (hi.yaw_rate - lo.yaw_rate) / (2.0 * da), max_relative = 1e-7);
         }

@@ -2,7 +2,7 @@
 //!
 //! Source: Kutta (1901), Zeitschrift für Mathematik und Physik 46:435-453.
 
-use crate::dynamics::{Dynamics, Input};
+use crate::dynamics::{Dynamics, ShipInput};
 use estimation::number::Real;
 
 /// Classical Runge–Kutta method of order four with a fixed step.
@@ -28,14 +28,14 @@ impl<R: Real> RungeKutta4<R> {
     pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], mut input: F)
     where
         D: Dynamics<R> + ?Sized,
-        F: FnMut(f64) -> Input<R>,
+        F: FnMut(f64) -> ShipInput<R>,
     {
         let inputs = [input(t), input(t + 0.5 * h), input(t + h)];
         self.step_with(dynamics, t, h, state, &inputs);
     }
 
     /// [`step`](Self::step) with the inputs at the beginning, in the middle and at the end of the step.
-    pub fn step_with<D>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], inputs: &[Input<R>; 3])
+    pub fn step_with<D>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], inputs: &[ShipInput<R>; 3])
     where
         D: Dynamics<R> + ?Sized,
     {

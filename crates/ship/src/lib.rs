@@ -38,7 +38,7 @@ pub mod short_number;
 pub mod signal;
 pub mod vessel;
 
-pub use dynamics::{Dynamics, Input, MeasuredChannels, Motion, Regressor};
+pub use dynamics::{Dynamics, MeasuredChannels, Motion, RegressorChannel, ShipInput};
 pub use effects::EffectReal;
 pub use estimation::number::Real;
 pub use first_order::FirstOrder;

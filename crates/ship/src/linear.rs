@@ -39,7 +39,7 @@ pub enum LinearError {
 /// N holds the centrifugal terms (m' + m_x', x_G' m'). The rudder is positive to starboard, so b₂ > 0 and b₁ < 0 for a
 /// stern rudder. A common factor of a row, such as ½ρL² or ½ρLd, cancels in the indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PrimeSwayYaw {
+pub struct PrimeSwayYawMatrices {
     /// Mass and added mass.
     pub M: [[f64; 2]; 2],
     /// Damping.
@@ -50,7 +50,7 @@ pub struct PrimeSwayYaw {
 
 /// Nondimensional indices K' = K L/U and T' = T U/L.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PrimeIndices {
+pub struct PrimeNomotoIndices {
     /// Turning ability K'.
     pub K: f64,
     /// T1', the time constant of course stability (negative for a course-unstable ship).
@@ -63,7 +63,7 @@ pub struct PrimeIndices {
 
 /// Indices of T1 T2 r'' + (T1 + T2) r' + r = K δ + K T3 δ'.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SecondOrderIndices {
+pub struct SecondOrderNomotoIndices {
     /// Turning ability K, 1/s.
     pub K: f64,
     /// T1, s; negative for a course-unstable ship.
@@ -78,7 +78,7 @@ fn det(m: &[[f64; 2]; 2]) -> f64 {
     m[0][0] * m[1][1] - m[0][1] * m[1][0]
 }
 
-impl PrimeSwayYaw {
+impl PrimeSwayYawMatrices {
     /// Indices K', T1', T2', T3' of these equations.
     ///
     /// T1 T2 = det M / det N, T1 + T2 = (n11 m22 + n22 m11 − n12 m21 − n21 m12) / det N,
@@ -87,7 +87,7 @@ impl PrimeSwayYaw {
     /// T1 is the time constant of larger magnitude if both have one sign, and the negative time constant if the signs
     /// differ (det N < 0: the ship is course-unstable, K and T1 are negative). Fails for a neutrally stable hull, a
     /// mass matrix that is not positive definite, an oscillating hull and a hull that a steady rudder does not turn.
-    pub fn indices(&self) -> Result<PrimeIndices, LinearError> {
+    pub fn indices(&self) -> Result<PrimeNomotoIndices, LinearError> {
         let Self { M, N, b } = self;
         let (det_M, det_N) = (det(M), det(N));
         if !(det_M > 0.0 && M[0][0] > 0.0 && det_M.is_finite()) {
@@ -110,19 +110,19 @@ impl PrimeSwayYaw {
         if steering == 0.0 || !steering.is_finite() {
             return Err(LinearError::NoSteering);
         }
-        Ok(PrimeIndices { K: steering / det_N, T1, T2, T3: (M[0][0] * b[1] - M[1][0] * b[0]) / steering })
+        Ok(PrimeNomotoIndices { K: steering / det_N, T1, T2, T3: (M[0][0] * b[1] - M[1][0] * b[0]) / steering })
     }
 }
 
-impl PrimeIndices {
+impl PrimeNomotoIndices {
     /// Dimensional indices of a ship of this length at this speed: K = K' U/L (1/s), T = T' L/U (s).
-    pub fn to_dimensional(&self, particulars: Particulars) -> SecondOrderIndices {
+    pub fn to_dimensional(&self, particulars: Particulars) -> SecondOrderNomotoIndices {
         let unit = particulars.length / particulars.speed;
-        SecondOrderIndices { K: self.K / unit, T1: self.T1 * unit, T2: self.T2 * unit, T3: self.T3 * unit }
+        SecondOrderNomotoIndices { K: self.K / unit, T1: self.T1 * unit, T2: self.T2 * unit, T3: self.T3 * unit }
     }
 }
 
-impl SecondOrderIndices {
+impl SecondOrderNomotoIndices {
     /// T1 + T2 − T3, s: the time constant of the first-order response at low frequency.
     ///
     /// It is the limit of slow steering only. A first-order response fitted to a 10/10 zig-zag has neither this T nor
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     /// Sway-yaw part of the S175 container ship (Son and Nomoto 1982).
-    const S175: PrimeSwayYaw = PrimeSwayYaw {
+    const S175: PrimeSwayYawMatrices = PrimeSwayYawMatrices {
         M: [[0.01497, 0.000_352_5], [0.000_352_5, 0.000_875]],
         N: [[0.012_035, 0.005_22], [0.003_843_6, 0.002_43]],
         b: [-0.002_578, 0.001_26],
@@ -170,13 +170,14 @@ mod tests {
 
     #[test]
     fn refuses_equations_without_indices() {
-        let neutral = PrimeSwayYaw { N: [[2.0, 1.0], [4.0, 2.0]], ..S175 };
+        let neutral = PrimeSwayYawMatrices { N: [[2.0, 1.0], [4.0, 2.0]], ..S175 };
         assert_eq!(neutral.indices(), Err(LinearError::NeutrallyStable(0.0)));
-        let massless = PrimeSwayYaw { M: [[0.0, 0.0], [0.0, 0.0]], ..S175 };
+        let massless = PrimeSwayYawMatrices { M: [[0.0, 0.0], [0.0, 0.0]], ..S175 };
         assert_eq!(massless.indices(), Err(LinearError::Mass(0.0)));
-        let swinging = PrimeSwayYaw { M: [[1.0, 0.0], [0.0, 1.0]], N: [[0.1, 1.0], [-1.0, 0.1]], b: [0.0, 1.0] };
+        let swinging =
+            PrimeSwayYawMatrices { M: [[1.0, 0.0], [0.0, 1.0]], N: [[0.1, 1.0], [-1.0, 0.1]], b: [0.0, 1.0] };
         assert!(matches!(swinging.indices(), Err(LinearError::Oscillatory { .. })));
-        let adrift = PrimeSwayYaw { b: [0.0, 0.0], ..S175 };
+        let adrift = PrimeSwayYawMatrices { b: [0.0, 0.0], ..S175 };
         assert_eq!(adrift.indices(), Err(LinearError::NoSteering));
     }
 }

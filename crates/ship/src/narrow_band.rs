@@ -5,7 +5,7 @@
 
 /// Stationary narrow-band process ξ'' + 2ζω₀ ξ' + ω₀² ξ = w with standard deviation σ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NarrowBand {
+pub struct NarrowBandProcess {
     /// Standard deviation σ of ξ, rad.
     pub sd: f64,
     /// Encounter frequency ω₀, rad/s.
@@ -14,7 +14,7 @@ pub struct NarrowBand {
     pub damping: f64,
 }
 
-/// Exact transition of a [`NarrowBand`] process over one step.
+/// Exact transition of a [`NarrowBandProcess`] process over one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NarrowBandStep {
     transition: [[f64; 2]; 2],
@@ -22,7 +22,7 @@ pub struct NarrowBandStep {
     factor: [[f64; 2]; 2],
 }
 
-impl NarrowBand {
+impl NarrowBandProcess {
     /// Stationary standard deviations of ξ (rad) and ξ' (rad/s); the two are independent at one instant.
     pub fn stationary_sd(&self) -> [f64; 2] {
         [self.sd, self.sd * self.frequency]
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn two_half_steps_are_one_step() {
-        let waves = NarrowBand { sd: 0.4, frequency: 0.6, damping: 0.1 };
+        let waves = NarrowBandProcess { sd: 0.4, frequency: 0.6, damping: 0.1 };
         let (half, whole) = (waves.step(0.5), waves.step(1.0));
         let start = [0.3, -0.1];
         let twice = half.advance(half.advance(start, [0.0; 2]), [0.0; 2]);

@@ -65,7 +65,7 @@ impl Particulars {
 const POWERS: [char; 8] = ['²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// Dimension of a unit such as "rad s²/m²".
-pub fn dimension(unit: &str) -> Dimension {
+pub fn unit_dimension(unit: &str) -> Dimension {
     let mut exponents = [0; 2];
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
     for (part, sign) in [(above, 1), (below, -1)] {
@@ -84,7 +84,7 @@ pub fn dimension(unit: &str) -> Dimension {
 }
 
 /// Unit of a dimension, without angles: "s²/m".
-pub fn unit(dimension: Dimension) -> String {
+pub fn dimension_unit(dimension: Dimension) -> String {
     let part = |sign: i32| {
         let symbols = ["s", "m"].into_iter().zip(dimension).filter(|(_, power)| power * sign > 0);
         let symbols = symbols.map(|(base, power)| match power.unsigned_abs() as usize {
@@ -121,18 +121,18 @@ mod tests {
         for (dimension, expected) in
             [([2, -1], "s²/m"), ([0, 0], "1"), ([-1, 0], "1/s"), ([3, 1], "s³ m"), ([-2, -3], "1/s² m³")]
         {
-            assert_eq!(unit(dimension), expected);
-            assert_eq!(super::dimension(expected), dimension);
+            assert_eq!(dimension_unit(dimension), expected);
+            assert_eq!(super::unit_dimension(expected), dimension);
         }
     }
 
     #[test]
     fn units_are_read() {
-        assert_eq!(dimension("rad s²/m²"), [2, -2]);
-        assert_eq!(dimension("1/s²"), [-2, 0]);
-        assert_eq!(dimension("s/rad²"), [1, 0]);
-        assert_eq!(dimension("rad s/m"), [1, -1]);
-        assert_eq!(dimension("1"), [0, 0]);
+        assert_eq!(unit_dimension("rad s²/m²"), [2, -2]);
+        assert_eq!(unit_dimension("1/s²"), [-2, 0]);
+        assert_eq!(unit_dimension("s/rad²"), [1, 0]);
+        assert_eq!(unit_dimension("rad s/m"), [1, -1]);
+        assert_eq!(unit_dimension("1"), [0, 0]);
         let prime = ["rad s²/m²", "1/s²", "s/rad²", "1/rad", "rad/s", "1", "s"].map(prime_unit);
         assert_eq!(prime, ["rad", "1", "1/rad²", "1/rad", "rad", "1", "1"]);
     }
@@ -141,11 +141,11 @@ mod tests {
     #[test]
     fn indices_lose_their_dimension() {
         let yukun = Particulars { length: 105.0, speed: 8.59 };
-        assert!((0.1 * yukun.prime_factor(dimension("1/s")) - 1.222).abs() < 1e-3);
-        assert!((16.3 * yukun.prime_factor(dimension("s")) - 1.3335).abs() < 1e-3);
+        assert!((0.1 * yukun.prime_factor(unit_dimension("1/s")) - 1.222).abs() < 1e-3);
+        assert!((16.3 * yukun.prime_factor(unit_dimension("s")) - 1.3335).abs() < 1e-3);
         let model = Particulars { length: 4.2, speed: 8.59 / 5.0 };
         // Froude scaling: a ship of one twenty-fifth of the length is five times as fast in time.
-        assert!((yukun.similarity_factor_to(model, dimension("s")) - 0.2).abs() < 1e-12);
-        assert!((yukun.similarity_factor_to(model, dimension("m")) - 0.04).abs() < 1e-12);
+        assert!((yukun.similarity_factor_to(model, unit_dimension("s")) - 0.2).abs() < 1e-12);
+        assert!((yukun.similarity_factor_to(model, unit_dimension("m")) - 0.04).abs() < 1e-12);
     }
 }

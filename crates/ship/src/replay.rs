@@ -1,7 +1,7 @@
 //! Replay of a recorded rudder through any [`Dynamics`]: deterministic simulation without helmsman, sensors or noise,
 //! for use in identification.
 
-use crate::dynamics::{Dynamics, Input, MeasuredChannels, Motion};
+use crate::dynamics::{Dynamics, MeasuredChannels, Motion, ShipInput};
 use crate::integrate::RungeKutta4;
 use crate::signal::Polyline;
 use estimation::number::Real;
@@ -20,20 +20,20 @@ pub struct RecordedSignals<'a> {
     /// Direction the relative wind comes from, clockwise from the bow, rad, unwrapped.
     pub wind_from: Option<&'a Polyline>,
     /// Propeller revolutions, 1/s.
-    pub propeller: Option<&'a Polyline>,
+    pub propeller_rate: Option<&'a Polyline>,
 }
 
 impl<'a> RecordedSignals<'a> {
     /// Record with a rudder only.
     pub fn from_rudder(rudder: &'a Polyline) -> Self {
-        Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
+        Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller_rate: None }
     }
 
     /// Input at time `t` (s) of a ship with this dead time of the rudder (s).
-    pub fn input<R: Real>(&self, t: f64, dead_time: R) -> Input<R> {
+    pub fn input<R: Real>(&self, t: f64, dead_time: R) -> ShipInput<R> {
         let corner = self.rudder.times().partition_point(|&c| c + dead_time.value() <= t);
         let rudder = Ramp::before(self.rudder, corner).at(t, dead_time);
-        Input { rudder, disturbance: 0.0, measured: self.measured(t, corner.saturating_sub(1)) }
+        ShipInput { rudder, disturbance_rudder: 0.0, measured: self.measured(t, corner.saturating_sub(1)) }
     }
 
     fn measured(&self, t: f64, piece: usize) -> MeasuredChannels {
@@ -43,12 +43,12 @@ impl<'a> RecordedSignals<'a> {
             sway: at(self.sway),
             wind_speed: at(self.wind_speed),
             wind_from: at(self.wind_from),
-            propeller: at(self.propeller),
+            propeller_rate: at(self.propeller_rate),
         }
     }
 
     fn has_channels(&self) -> bool {
-        [self.speed, self.sway, self.wind_speed, self.wind_from, self.propeller].iter().any(Option::is_some)
+        [self.speed, self.sway, self.wind_speed, self.wind_from, self.propeller_rate].iter().any(Option::is_some)
     }
 }
 
@@ -122,7 +122,7 @@ pub fn replay_states<R, D, S, V>(
     R: Real,
     D: Dynamics<R> + ?Sized,
     S: Fn(f64, f64) -> f64,
-    V: FnMut(usize, &[R], &Input<R>),
+    V: FnMut(usize, &[R], &ShipInput<R>),
 {
     let Some(&start) = times.first() else { return };
     let dead_time = dynamics.dead_time();
@@ -133,8 +133,8 @@ pub fn replay_states<R, D, S, V>(
     let mut corner = corners.partition_point(|&c| c + late <= start);
     let mut ramp = Ramp::before(recorded.rudder, corner);
     // Inputs at the beginning, in the middle and at the end of a step.
-    let mut inputs = [Input::default(); 3];
-    let act = |input: &mut Input<R>, t: f64, ramp: &Ramp, corner: usize| {
+    let mut inputs = [ShipInput::default(); 3];
+    let act = |input: &mut ShipInput<R>, t: f64, ramp: &Ramp, corner: usize| {
         input.rudder = ramp.at(t, dead_time);
         if has_channels {
             input.measured = recorded.measured(t, corner.saturating_sub(1));

@@ -13,13 +13,13 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::dynamics::{Dynamics, Input, Motion, Regressor};
+use crate::dynamics::{Dynamics, Motion, RegressorChannel, ShipInput};
 use crate::effects::{
     BaseFactors, Effect, EffectReal, EffectTarget, OperatingPoint, Parameter, SecondOrderTimeConstants,
 };
 use crate::first_order::FirstOrder;
 use crate::number::Tangent;
-use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
+use crate::replayable::{Replayable, ReplayedShip, ResolvedTimeConstants};
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETER_COUNT: usize = 3;
@@ -161,7 +161,7 @@ impl Response {
     }
 
     /// Random headings that the effects add to the observed heading.
-    pub fn random_headings(&self) -> impl Iterator<Item = crate::narrow_band::NarrowBand> {
+    pub fn random_headings(&self) -> impl Iterator<Item = crate::narrow_band::NarrowBandProcess> {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
@@ -195,7 +195,7 @@ impl<R: EffectReal> Response<R> {
             .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters()], place))
     }
 
-    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a Input<R>) -> OperatingPoint<'a, R> {
+    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a ShipInput<R>) -> OperatingPoint<'a, R> {
         OperatingPoint {
             t,
             heading: state[0],
@@ -208,7 +208,7 @@ impl<R: EffectReal> Response<R> {
     }
 
     #[inline]
-    fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
+    fn instant(&self, t: f64, state: &[R], input: &ShipInput<R>) -> Instant<R> {
         let mut rudder = input.rudder;
         for (effect, p, place) in self.effects().filter(|(.., place)| place.acts_on.transforms_rudder) {
             rudder = R::effect_equations(effect).rudder(p, &state[place.states()], rudder);
@@ -232,10 +232,10 @@ impl<R: EffectReal> Response<R> {
 
     /// Right-hand side f of the module's equation, and r', which differs from f for a second-order response.
     #[inline]
-    fn accelerations(&self, state: &[R], input: &Input<R>, instant: &Instant<R>) -> (R, R) {
+    fn accelerations(&self, state: &[R], input: &ShipInput<R>, instant: &Instant<R>) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
         let b = self.parameters[1] * instant.scale.gain;
-        let steering = instant.rudder + self.parameters[2] + input.disturbance;
+        let steering = instant.rudder + self.parameters[2] + input.disturbance_rudder;
         let f = -a * state[1] + b * steering + instant.acceleration;
         match &self.coupling {
             Some((coupling, s)) => {
@@ -250,14 +250,14 @@ impl<R: EffectReal> Response<R> {
 
 impl<R: EffectReal> Replayable<R> for Response<R> {
     /// `true` if an effect of this response uses this measured channel.
-    fn needs(&self, channel: Regressor) -> bool {
+    fn needs(&self, channel: RegressorChannel) -> bool {
         self.model.effects.iter().any(|effect| effect.uses(channel))
     }
 
     /// Time constants that steps must resolve.
-    fn time_constants(&self) -> TimeConstants {
+    fn time_constants(&self) -> ResolvedTimeConstants {
         let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
-        let mut pace = TimeConstants::at_all_times(values[0].abs().recip());
+        let mut pace = ResolvedTimeConstants::at_all_times(values[0].abs().recip());
         for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
             let p = &values[place.parameters()];
             let (time, span) = (effect.min_time_constant(p), effect.fast_span(p));
@@ -268,7 +268,7 @@ impl<R: EffectReal> Replayable<R> for Response<R> {
 
     /// Initial state of a record that begins with this heading (rad), yaw rate (rad/s) and input: the states of the
     /// effects are those of a straight approach at a constant rudder angle.
-    fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+    fn initialise(&self, heading: R, yaw_rate: R, input: &ShipInput<R>, state: &mut [R]) {
         state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
@@ -308,14 +308,14 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
     }
 
     fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]) {
-        self.initialise(heading, yaw_rate, &Input::default(), state);
+        self.initialise(heading, yaw_rate, &ShipInput::default(), state);
     }
 
-    fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
+    fn rates(&self, t: f64, state: &[R], input: &ShipInput<R>, rate: &mut [R]) {
         if self.model.effects.is_empty() {
             let [a, b, bias] = [self.parameters[0], self.parameters[1], self.parameters[2]];
             rate[0] = state[1];
-            rate[1] = -a * state[1] + b * (input.rudder + bias + input.disturbance);
+            rate[1] = -a * state[1] + b * (input.rudder + bias + input.disturbance_rudder);
             return;
         }
         let instant = self.instant(t, state, input);
@@ -340,7 +340,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         }
     }
 
-    fn update_memory(&self, _t: f64, state: &mut [R], input: &Input<R>) {
+    fn update_memory(&self, _t: f64, state: &mut [R], input: &ShipInput<R>) {
         if self.model.states == 2 {
             return;
         }
@@ -352,7 +352,7 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
         }
     }
 
-    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion {
+    fn motion(&self, t: f64, state: &[R], input: &ShipInput<R>) -> Motion {
         let instant = self.instant(t, state, input);
         let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
         Motion {

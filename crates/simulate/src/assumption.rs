@@ -24,7 +24,7 @@ impl Assumption {
         let Simulation { manoeuvre, helmsman, gear, sensors, .. } = simulation;
         match self {
             Self::InstantRudder => {
-                gear.rate.is_none() && gear.lag == 0.0 && !matches!(manoeuvre, Manoeuvre::Replay { .. })
+                gear.rudder_rate.is_none() && gear.lag == 0.0 && !matches!(manoeuvre, Manoeuvre::Replay { .. })
             }
             Self::PerfectHelmsman => {
                 let perfect = helmsman.reads_display_every.is_none() && helmsman.reaction_time == 0.0;

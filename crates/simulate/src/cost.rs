@@ -2,7 +2,7 @@
 //! memory. [`Simulation::check`] rejects a run whose estimate is too large; a run that exceeds its estimate stops
 //! with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 
 use crate::error::{Check, Requirement, SpecificationError};
@@ -16,9 +16,9 @@ use crate::wave_path;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunCost {
     /// Maximum duration of the run, s; every wait for a heading counts with the maximum wait.
-    pub duration: f64,
+    pub max_duration: f64,
     /// Maximum number of steps of solver, weather and sea, rows, and display readings.
-    pub steps: f64,
+    pub max_steps: f64,
     /// Key and value of the part with the longest duration.
     longest: (&'static str, f64),
 }
@@ -46,12 +46,16 @@ impl Simulation {
         let longest =
             parts.iter().fold(parts[0], |longest, part| if part.duration > longest.duration { *part } else { longest });
         let duration = sum(parts);
-        RunCost { duration, steps: duration * self.steps_per_second(), longest: (longest.key, longest.value) }
+        RunCost {
+            max_duration: duration,
+            max_steps: duration * self.steps_per_second(),
+            longest: (longest.key, longest.value),
+        }
     }
 
     /// Check of the number of steps; fails with the key and value of the part with the longest duration.
     pub(crate) fn check_cost(&self) -> Check {
-        let RunCost { steps, longest: (key, value), .. } = self.cost();
+        let RunCost { max_steps: steps, longest: (key, value), .. } = self.cost();
         let most = MAX_STEPS as f64;
         if steps <= most {
             return Ok(());
@@ -62,10 +66,10 @@ impl Simulation {
     /// Lead-in and at most `count` steps of the manoeuvre, as parts; `key_of_waits` replaces the keys of waits for a
     /// heading.
     fn steps(&self, count: usize, key_of_waits: Option<&'static str>) -> Vec<RunPart> {
-        let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in)];
+        let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in_time)];
         let wait = self.longest_wait + self.helmsman.reaction_time;
         let is_slow = self.helmsman.reaction_time > self.longest_wait;
-        for (orders, OrderStep { trigger, key, .. }) in self.manoeuvre.steps().take(count).enumerate() {
+        for (orders, OrderStep { trigger, key, .. }) in self.manoeuvre.order_steps().take(count).enumerate() {
             let part = match trigger {
                 Trigger::Time(time) => RunPart::time(key, time),
                 Trigger::Never => RunPart::time(key, f64::INFINITY),
@@ -88,7 +92,7 @@ impl Simulation {
     fn until_end_of_manoeuvre(&self) -> Vec<RunPart> {
         match self.manoeuvre {
             Manoeuvre::ZigZag { duration: Some(duration), .. } => {
-                let lead_in = RunPart::time("approach.lead-in-s", self.approach.lead_in);
+                let lead_in = RunPart::time("approach.lead-in-s", self.approach.lead_in_time);
                 vec![lead_in, RunPart::time("manoeuvre.zig-zag.duration-s", duration)]
             }
             Manoeuvre::ZigZag { executes: None, .. } => vec![RunPart::time("recording.duration-s", f64::INFINITY)],
@@ -103,7 +107,7 @@ impl Simulation {
         };
         let delay = self.sensors.heading_delay;
         parts.extend([
-            RunPart::time("recording.offset-s", self.recording.offset.unwrap_or(0.0)),
+            RunPart::time("recording.offset-s", self.recording.first_row_offset.unwrap_or(0.0)),
             RunPart::time("recording.duration-s", self.recording.duration.unwrap_or(f64::INFINITY)),
             // A heading more recent than its row is read after the last row.
             RunPart { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) },
@@ -122,11 +126,11 @@ impl Simulation {
         };
         let display = self.helmsman.reads_display_every.map_or(0.0, |period| 1.0 / period);
         let weather = if self.disturbances.are_time_dependent() { 1.0 / self.weather_cell_width } else { 0.0 };
-        let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
+        let sea = |waves: &NarrowBandProcess| 1.0 / wave_path::cell_width(waves);
         let declared = self.disturbances.waves.map(|waves| waves.process());
         let seas = declared.iter().chain(self.ship.random_headings()).map(sea).sum::<f64>();
         // Rows, and readings of the instruments.
-        1.0 / step + 2.0 / self.recording.period + display + weather + seas
+        1.0 / step + 2.0 / self.recording.sampling_period + display + weather + seas
     }
 }
 
@@ -157,7 +161,7 @@ mod tests {
         assert_eq!(refused(&|s| executes(s, MAX_EXECUTES)), "manoeuvre.zig-zag.executes", "a hundred days of zig-zags");
         assert_eq!(refused(&|s| s.recording.after_execute = Some(90_000)), "recording.after-execute");
         assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
-        assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
+        assert_eq!(refused(&|s| s.approach.lead_in_time = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {
             s.ship = SimulatedShip::from_first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
         };
@@ -173,8 +177,8 @@ mod tests {
     fn the_estimate_is_not_below_the_run() {
         let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
         simulation.sensors.heading_delay = -3.0;
-        (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.0));
-        let RunCost { duration, steps, .. } = simulation.cost();
+        (simulation.recording.after_execute, simulation.recording.first_row_offset) = (Some(2), Some(1.0));
+        let RunCost { max_duration: duration, max_steps: steps, .. } = simulation.cost();
         assert_eq!(duration, 3600.0 + 1.0 + 100.0 + 3.0);
         // The closed form has steps of a minute; every row is read twice.
         assert!((steps - duration * (1.0 / 60.0 + 2.0)).abs() < 1e-6, "{steps}");

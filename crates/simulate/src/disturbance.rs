@@ -8,7 +8,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 use trial::degrees::Degrees;
 
 use crate::error::{self, Check};
@@ -23,12 +23,12 @@ pub struct Disturbances {
     pub gusts: Option<GaussMarkov>,
     /// Linear trend of the moment from the beginning of the run, as rudder angle.
     #[serde(rename = "drift-deg-per-s", with = "Degrees::<f64>")]
-    pub drift: f64,
+    pub moment_drift: f64,
     /// Moment that is present for a part of the run only.
     pub squall: Option<Squall>,
     /// Random walk of the moment: its standard deviation after one second, as rudder angle.
     #[serde(rename = "random-walk-deg-per-root-s", with = "Degrees::<f64>")]
-    pub random_walk: f64,
+    pub moment_random_walk: f64,
     /// Narrow-band yaw from waves, added to the response in the observed heading.
     pub waves: Option<WaveSpectrum>,
 }
@@ -42,7 +42,7 @@ pub struct Wind {
     pub moment: f64,
     /// Direction the true wind comes from, clockwise from north.
     #[serde(rename = "from-deg", with = "Degrees::<f64>")]
-    pub from: f64,
+    pub from_direction: f64,
     /// True wind speed; with it the record has wind channels.
     #[serde(rename = "speed-m-s")]
     pub speed: Option<f64>,
@@ -107,8 +107,8 @@ pub struct WaveSpectrum {
 
 impl WaveSpectrum {
     /// Narrow-band process of the heading.
-    pub fn process(&self) -> NarrowBand {
-        NarrowBand { sd: self.sd, frequency: self.frequency, damping: self.damping }
+    pub fn process(&self) -> NarrowBandProcess {
+        NarrowBandProcess { sd: self.sd, frequency: self.frequency, damping: self.damping }
     }
 }
 
@@ -116,14 +116,18 @@ impl Disturbances {
     /// `true` if a moment, or the gust factor of the wind, depends on time alone.
     pub(crate) fn are_time_dependent(&self) -> bool {
         let gusting = self.wind.is_some_and(|wind| wind.gusting.is_some());
-        self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0 || gusting
+        self.gusts.is_some()
+            || self.squall.is_some()
+            || self.moment_drift != 0.0
+            || self.moment_random_walk != 0.0
+            || gusting
     }
 
     /// Check of every value; fails with the first invalid value.
     pub fn check(&self) -> Check {
         if let Some(wind) = &self.wind {
             error::check_finite("disturbance.wind.moment-deg", wind.moment)?;
-            error::check_finite("disturbance.wind.from-deg", wind.from)?;
+            error::check_finite("disturbance.wind.from-deg", wind.from_direction)?;
             if let Some(speed) = wind.speed {
                 error::check_not_negative("disturbance.wind.speed-m-s", speed)?;
             }
@@ -136,14 +140,14 @@ impl Disturbances {
             error::check_not_negative("disturbance.gusts.sd-deg", gusts.sd)?;
             error::check_positive_time("disturbance.gusts.correlation-s", gusts.correlation_time)?;
         }
-        error::check_finite("disturbance.drift-deg-per-s", self.drift)?;
+        error::check_finite("disturbance.drift-deg-per-s", self.moment_drift)?;
         if let Some(squall) = &self.squall {
             error::check_time("disturbance.squall.start-s", squall.start)?;
             error::check_positive_time("disturbance.squall.duration-s", squall.duration)?;
             error::check_between("disturbance.squall.edge-s", squall.edge, 0.0, 0.5 * squall.duration)?;
             error::check_finite("disturbance.squall.moment-deg", squall.moment)?;
         }
-        error::check_not_negative("disturbance.random-walk-deg-per-root-s", self.random_walk)?;
+        error::check_not_negative("disturbance.random-walk-deg-per-root-s", self.moment_random_walk)?;
         if let Some(waves) = &self.waves {
             error::check_not_negative("disturbance.waves.sd-deg", waves.sd)?;
             error::check_positive("disturbance.waves.frequency-rad-s", waves.frequency)?;
@@ -157,7 +161,7 @@ impl Disturbances {
 /// Maximum encounter frequency of waves, rad/s; even a model of 1 m length encounters lower frequencies.
 const MAX_FREQUENCY_RAD_S: f64 = 100.0;
 
-/// Maximum relative damping at which [`NarrowBand`] oscillates; at 1 its damped frequency is zero.
+/// Maximum relative damping at which [`NarrowBandProcess`] oscillates; at 1 its damped frequency is zero.
 const MAX_DAMPING: f64 = 0.999;
 
 impl Squall {
@@ -178,13 +182,13 @@ impl Wind {
     /// Yaw moment as equivalent rudder angle, rad, at heading `heading` (rad) and gust factor `gust` = 1 + g.
     #[inline]
     pub fn yaw_moment(&self, heading: f64, gust: f64) -> f64 {
-        self.moment * gust * (2.0 * (self.from - heading)).sin()
+        self.moment * gust * (2.0 * (self.from_direction - heading)).sin()
     }
 
     /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
     /// (m/s) and a ship with speed `U` (m/s) ahead on `heading` (rad); the drift angle is neglected.
     pub fn relative_wind(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
-        trial::relative_wind(speed, self.from, U, heading)
+        trial::relative_wind(speed, self.from_direction, U, heading)
     }
 }
 
@@ -201,7 +205,7 @@ mod tests {
 
     #[test]
     fn wind_from_ahead_adds_to_the_speed_and_from_abeam_does_not() {
-        let wind = Wind { moment: 0.0, from: 0.5, speed: Some(10.0), gusting: None };
+        let wind = Wind { moment: 0.0, from_direction: 0.5, speed: Some(10.0), gusting: None };
         let (speed, from) = wind.relative_wind(10.0, 5.0, 0.5);
         assert_relative_eq!(speed, 15.0, max_relative = 1e-12);
         assert_relative_eq!(from, 0.0, epsilon = 1e-12);

@@ -19,7 +19,7 @@ pub struct SteeringGear {
     /// Rudder rate; the default is the rate of the ship, or an instantaneous rudder if the source of the ship gives
     /// none.
     #[serde(rename = "rate-deg-s", with = "Degrees::<Option<f64>>")]
-    pub rate: Option<f64>,
+    pub rudder_rate: Option<f64>,
     /// Time constant of the exponential approach to the order.
     #[serde(rename = "lag-s")]
     pub lag: f64,
@@ -32,10 +32,10 @@ pub struct SteeringGear {
     /// Maximum rudder angle to either side; the default is that of the ship, or 90° if the source of the ship gives
     /// none.
     #[serde(rename = "maximum-deg", with = "Degrees::<Option<f64>>")]
-    pub maximum: Option<f64>,
+    pub max_rudder: Option<f64>,
 }
 
-/// Motion of the rudder within one [`Segment`].
+/// Motion of the rudder within one [`RudderSegment`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RudderMotion {
     /// Constant angle.
@@ -56,7 +56,7 @@ pub enum RudderMotion {
 
 /// Piece of a rudder path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment {
+pub struct RudderSegment {
     /// Beginning, s; −∞ for the first segment.
     pub start: f64,
     /// End, s; +∞ for the last segment.
@@ -67,7 +67,7 @@ pub struct Segment {
     pub motion: RudderMotion,
 }
 
-impl Segment {
+impl RudderSegment {
     /// Rudder angle, rad, at time `t`, s; also valid just outside the segment, as its smooth continuation.
     #[inline]
     pub fn angle_at(&self, t: f64) -> f64 {
@@ -87,26 +87,26 @@ impl SteeringGear {
 
     /// Gear with a rate limit, rad/s, only.
     pub fn with_rate(rate: f64) -> Self {
-        Self { rate: Some(rate), ..Self::default() }
+        Self { rudder_rate: Some(rate), ..Self::default() }
     }
 
     /// Gear with missing settings taken from a ship, if its source gives them; the maximum angle is otherwise 90°.
     pub fn with_ship_defaults(self, ship: &Ship) -> Self {
         Self {
-            rate: self.rate.or(ship.rudder_rate),
-            maximum: self.maximum.or(ship.largest_rudder).or(Some(from_deg(Self::MAX_DEG))),
+            rudder_rate: self.rudder_rate.or(ship.rudder_rate),
+            max_rudder: self.max_rudder.or(ship.largest_rudder).or(Some(from_deg(Self::MAX_DEG))),
             ..self
         }
     }
 
     /// Maximum rudder rate, rad/s; infinite without a rate limit.
     pub fn largest_rate(&self) -> f64 {
-        self.rate.unwrap_or(f64::INFINITY)
+        self.rudder_rate.unwrap_or(f64::INFINITY)
     }
 
     /// Maximum rudder angle to either side, rad; infinite without stops.
     pub fn largest_rudder(&self) -> f64 {
-        self.maximum.unwrap_or(f64::INFINITY)
+        self.max_rudder.unwrap_or(f64::INFINITY)
     }
 
     /// Check of every value; fails with the first invalid value.
@@ -120,7 +120,7 @@ impl SteeringGear {
 
     /// Appends the response to an order (rad) that arrives at `start` (s) with the rudder at `from` (rad): segments,
     /// the last without end.
-    fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
+    fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<RudderSegment>) {
         let (rate, maximum) = (self.largest_rate(), self.largest_rudder());
         let target = order.clamp(-maximum, maximum);
         let side = (target - from).signum();
@@ -135,7 +135,7 @@ impl SteeringGear {
             if error > until {
                 if rate.is_finite() {
                     let end = t + (error - until) / rate;
-                    path.push(Segment { start: t, end, angle, motion: RudderMotion::Ramp { rate: side * rate } });
+                    path.push(RudderSegment { start: t, end, angle, motion: RudderMotion::Ramp { rate: side * rate } });
                     t = end;
                 }
                 (error, angle) = (until, target - side * until);
@@ -143,7 +143,7 @@ impl SteeringGear {
             if self.lag > 0.0 && error > self.dead_band {
                 let end =
                     if self.dead_band > 0.0 { t + self.lag * (error / self.dead_band).ln() } else { f64::INFINITY };
-                path.push(Segment {
+                path.push(RudderSegment {
                     start: t,
                     end,
                     angle,
@@ -153,7 +153,7 @@ impl SteeringGear {
             }
         }
         if t.is_finite() {
-            path.push(Segment { start: t, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
+            path.push(RudderSegment { start: t, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         }
     }
 }
@@ -161,14 +161,19 @@ impl SteeringGear {
 /// Rudder path: segments without gaps from −∞ to +∞.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RudderPath {
-    segments: Vec<Segment>,
+    segments: Vec<RudderSegment>,
 }
 
 impl RudderPath {
     /// Rudder that rests at `angle` (rad) until the first order.
     pub fn constant(angle: f64) -> Self {
         let mut segments = Vec::with_capacity(64);
-        segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
+        segments.push(RudderSegment {
+            start: f64::NEG_INFINITY,
+            end: f64::INFINITY,
+            angle,
+            motion: RudderMotion::Hold,
+        });
         Self { segments }
     }
 
@@ -178,14 +183,14 @@ impl RudderPath {
         let (times, values) = (signal.times(), signal.values());
         let shift = start - times[0];
         let mut path = Self { segments: Vec::with_capacity(times.len() + 1) };
-        path.segments.push(Segment { start: f64::NEG_INFINITY, end: start, angle, motion: RudderMotion::Hold });
+        path.segments.push(RudderSegment { start: f64::NEG_INFINITY, end: start, angle, motion: RudderMotion::Hold });
         for (t, delta) in times.windows(2).zip(values.windows(2)) {
             let motion = RudderMotion::Ramp { rate: (delta[1] - delta[0]) / (t[1] - t[0]) };
-            path.segments.push(Segment { start: t[0] + shift, end: t[1] + shift, angle: delta[0], motion });
+            path.segments.push(RudderSegment { start: t[0] + shift, end: t[1] + shift, angle: delta[0], motion });
         }
         let last = times.len() - 1;
         let (start, angle) = (times[last] + shift, values[last]);
-        path.segments.push(Segment { start, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
+        path.segments.push(RudderSegment { start, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         path
     }
 
@@ -205,7 +210,7 @@ impl RudderPath {
     }
 
     /// Segments in order of time.
-    pub fn segments(&self) -> &[Segment] {
+    pub fn segments(&self) -> &[RudderSegment] {
         &self.segments
     }
 
@@ -259,7 +264,8 @@ mod tests {
 
     #[test]
     fn rate_lag_dead_time_and_dead_band_follow_one_another() {
-        let gear = SteeringGear { rate: Some(0.05), lag: 2.0, dead_time: 1.5, dead_band: 0.01, maximum: None };
+        let gear =
+            SteeringGear { rudder_rate: Some(0.05), lag: 2.0, dead_time: 1.5, dead_band: 0.01, max_rudder: None };
         let path = answer(&gear, 0.0, 0.4);
         let starts: Vec<f64> = path.segments()[1..].iter().map(|segment| segment.start).collect();
         // Ramp until the error is rate·lag = 0.1 (6 s), then lag·ln(0.1/0.01) until it is the dead band.
@@ -279,7 +285,7 @@ mod tests {
     /// Solution of δ' = clamp((δ_c − δ)/lag, ±rate), in small steps.
     #[test]
     fn segments_are_the_solution_of_the_equation() {
-        let gear = SteeringGear { rate: Some(0.08), lag: 1.0, ..SteeringGear::default() };
+        let gear = SteeringGear { rudder_rate: Some(0.08), lag: 1.0, ..SteeringGear::default() };
         let path = answer(&gear, 0.3, -0.1);
         let (mut delta, h) = (0.3, 1e-4);
         for step in 0..100_000 {
@@ -291,7 +297,7 @@ mod tests {
 
     #[test]
     fn a_new_order_takes_over_where_the_rudder_is() {
-        let gear = SteeringGear { rate: Some(0.1), dead_time: 1.0, ..SteeringGear::default() };
+        let gear = SteeringGear { rudder_rate: Some(0.1), dead_time: 1.0, ..SteeringGear::default() };
         let mut path = answer(&gear, 0.0, 0.5);
         path.order(12.0, -0.5, &gear);
         assert_abs_diff_eq!(path.angle_at(13.0), 0.2, epsilon = 1e-15);
@@ -304,7 +310,8 @@ mod tests {
 
     #[test]
     fn stops_and_dead_band_hold_the_rudder() {
-        let gear = SteeringGear { rate: Some(0.1), dead_band: 0.02, maximum: Some(0.6), ..SteeringGear::default() };
+        let gear =
+            SteeringGear { rudder_rate: Some(0.1), dead_band: 0.02, max_rudder: Some(0.6), ..SteeringGear::default() };
         assert_abs_diff_eq!(answer(&gear, 0.0, 0.9).angle_at(100.0), 0.58, epsilon = 1e-15);
         assert_eq!(answer(&gear, 0.3, 0.31).angle_at(100.0), 0.3);
     }

@@ -45,7 +45,7 @@ pub struct HelmOrder {
     /// True yaw rate at that time, rad/s.
     pub yaw_rate: f64,
     /// Ordered rudder angle, rad.
-    pub order: f64,
+    pub ordered_rudder: f64,
 }
 
 /// State of one manoeuvre in one run: orders given, next trigger and end.
@@ -78,11 +78,11 @@ impl<'a> Helm<'a> {
 
     /// Trigger of the next order; times are on the clock of the run.
     pub fn trigger(&self) -> Trigger {
-        let step = self.manoeuvre.step(self.orders);
+        let step = self.manoeuvre.order_step(self.orders);
         match (self.due, step.trigger) {
             (Some(due), _) => Trigger::Time(due),
             _ if self.finished => Trigger::Never,
-            (None, Trigger::Time(_)) if step.order.is_none() => Trigger::Never,
+            (None, Trigger::Time(_)) if step.ordered_rudder.is_none() => Trigger::Never,
             (None, Trigger::Time(time)) => Trigger::Time(self.last + time),
             (None, heading) => heading,
         }
@@ -92,7 +92,7 @@ impl<'a> Helm<'a> {
     /// at this time, because of the reaction time or at the end of the manoeuvre.
     pub fn act(&mut self, t: f64) -> Option<f64> {
         let is_heading_dependent = matches!(self.trigger(), Trigger::Deviation { .. });
-        let Some(order) = self.manoeuvre.step(self.orders).order else {
+        let Some(order) = self.manoeuvre.order_step(self.orders).ordered_rudder else {
             (self.finished, self.end) = (true, t);
             return None;
         };
@@ -102,8 +102,8 @@ impl<'a> Helm<'a> {
         }
         (self.due, self.last) = (None, t);
         self.orders += 1;
-        let next = self.manoeuvre.step(self.orders);
-        if let (Trigger::Time(time), None) = (next.trigger, next.order) {
+        let next = self.manoeuvre.order_step(self.orders);
+        if let (Trigger::Time(time), None) = (next.trigger, next.ordered_rudder) {
             self.end = self.end.min(t + time);
         }
         Some(order)

@@ -29,7 +29,7 @@
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.32));
 //! simulation.sensors.heading_noise = from_deg(0.1);
 //! let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 })?;
-//! assert!((simulated.truth.executes[1].time - 24.24).abs() < 0.01);
+//! assert!((simulated.truth.execute_orders[1].time - 24.24).abs() < 0.01);
 //! # Ok::<(), kempf_simulate::SimulateError>(())
 //! ```
 //!

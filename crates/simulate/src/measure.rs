@@ -123,7 +123,7 @@ pub(crate) fn with_sensor_errors(
         quantise_all(&mut rudder, sensors.rudder_quantum);
     }
     let (channels, kept) = channels_with_errors(sensors, perfect_readings, waves, key);
-    let mut columns = Columns { time: perfect_readings.stamps.clone(), channels, unknown: Vec::new() };
+    let mut columns = Columns { time: perfect_readings.stamps.clone(), channels, unknown_columns: Vec::new() };
     columns.channels.insert(Channel::Rudder, rudder);
     if let Some(kept) = &kept {
         retain_flagged(&mut columns.time, kept);
@@ -251,7 +251,7 @@ fn reading_at(readings: &[DisplayReading], t: f64) -> Option<&DisplayReading> {
 
 fn order_at(executes: &[HelmOrder], first: f64, t: f64) -> f64 {
     let given = executes.partition_point(|execute| execute.time <= t);
-    if given == 0 { first } else { executes[given - 1].order }
+    if given == 0 { first } else { executes[given - 1].ordered_rudder }
 }
 
 fn wind_channels(view: &TrueRunView) -> Vec<(Channel, Vec<f64>)> {
@@ -269,7 +269,7 @@ fn wind_channels(view: &TrueRunView) -> Vec<(Channel, Vec<f64>)> {
         let (speed, from) = relative.into_iter().unzip();
         channels.extend([(Channel::WindRelativeSpeed, speed), (Channel::WindRelativeFrom, from)]);
     }
-    channels.push((Channel::WindTrueFrom, vec![wind.from; speeds.len()]));
+    channels.push((Channel::WindTrueFrom, vec![wind.from_direction; speeds.len()]));
     channels.push((Channel::WindTrueSpeed, speeds));
     channels
 }

@@ -19,7 +19,7 @@ use crate::stream::{RngPurpose, StreamKey, normal};
 pub struct Recording {
     /// Time between two rows.
     #[serde(rename = "sampling-s")]
-    pub period: f64,
+    pub sampling_period: f64,
     // A manoeuvre that ends earlier ends the record.
     /// Time from the first to the last row; if left out, the record lasts until the end of the manoeuvre.
     #[serde(rename = "duration-s")]
@@ -28,7 +28,7 @@ pub struct Recording {
     pub after_execute: Option<usize>,
     /// Time from the execute in `after-execute` to the first row; 0 if left out.
     #[serde(rename = "offset-s")]
-    pub offset: Option<f64>,
+    pub first_row_offset: Option<f64>,
     /// Source of the rudder column: the feedback, or angles reconstructed from the orders.
     #[serde(default)]
     pub rudder: RudderSource,
@@ -63,28 +63,36 @@ impl Recording {
     /// Record of the whole run with this time between rows, s.
     pub fn every(period: f64) -> Self {
         let (rudder, weather) = (RudderSource::Feedback, None);
-        Self { period, duration: None, after_execute: None, offset: None, rudder, assumed_rudder_rate: None, weather }
+        Self {
+            sampling_period: period,
+            duration: None,
+            after_execute: None,
+            first_row_offset: None,
+            rudder,
+            assumed_rudder_rate: None,
+            weather,
+        }
     }
 
     /// Maximum permitted duration at this sampling period, s; it gives `MAX_ROWS` rows.
     pub(crate) fn max_duration(&self) -> f64 {
-        (MAX_ROWS - 1) as f64 * self.period
+        (MAX_ROWS - 1) as f64 * self.sampling_period
     }
 
     /// Number of rows; `None` without a duration.
     pub fn rows(&self) -> Option<usize> {
         // A duration of whole periods includes its last row despite rounding.
-        self.duration.map(|duration| (duration / self.period + 1e-9).floor() as usize + 1)
+        self.duration.map(|duration| (duration / self.sampling_period + 1e-9).floor() as usize + 1)
     }
 
     /// Check of every value; fails with the first value that is invalid or requires another key.
     pub fn check(&self) -> Check {
-        error::check_positive("recording.sampling-s", self.period)?;
-        error::check_between("recording.sampling-s", self.period, MIN_PERIOD_S, MAX_PERIOD_S)?;
+        error::check_positive("recording.sampling-s", self.sampling_period)?;
+        error::check_between("recording.sampling-s", self.sampling_period, MIN_PERIOD_S, MAX_PERIOD_S)?;
         if let Some(duration) = self.duration {
             error::check_positive("recording.duration-s", duration)?;
         }
-        match (self.after_execute, self.offset) {
+        match (self.after_execute, self.first_row_offset) {
             (Some(number), offset) => {
                 error::check_count("recording.after-execute", number, MAX_EXECUTES)?;
                 error::check_time("recording.offset-s", offset.unwrap_or(0.0))?;
@@ -160,9 +168,10 @@ impl Sampler {
 
     /// Sampler at the instants of the instruments; `None` if these instants are the stamps.
     pub fn at_instrument_times(start: f64, recording: &Recording, sensors: &Sensors, key: &StreamKey) -> Option<Self> {
-        let deviates = sensors.jitter > 0.0 || sensors.heading_delay != 0.0;
+        let deviates = sensors.sampling_jitter > 0.0 || sensors.heading_delay != 0.0;
         deviates.then(|| {
-            let jitter = Jitter { rng: key.rng(RngPurpose::Jitter), sd: sensors.jitter, delay: sensors.heading_delay };
+            let jitter =
+                Jitter { rng: key.rng(RngPurpose::Jitter), sd: sensors.sampling_jitter, delay: sensors.heading_delay };
             Self::new(start, recording, Some(jitter))
         })
     }
@@ -172,8 +181,15 @@ impl Sampler {
         // One more than the limit, so that an endless record is detected.
         let remaining = rows.unwrap_or(MAX_ROWS + 1);
         let samples = Vec::with_capacity(rows.unwrap_or(0).min(MAX_RESERVED_ROWS));
-        let mut sampler =
-            Self { start, period: recording.period, remaining, deviation, next: start, samples, jitter: Vec::new() };
+        let mut sampler = Self {
+            start,
+            period: recording.sampling_period,
+            remaining,
+            deviation,
+            next: start,
+            samples,
+            jitter: Vec::new(),
+        };
         sampler.aim();
         sampler
     }

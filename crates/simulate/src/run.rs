@@ -180,7 +180,7 @@ impl<'a, P: Propagator> Run<'a, P> {
     fn execute(&mut self, time: f64, order: f64) {
         let state = self.propagator.state();
         self.path.order(time, order, self.gear);
-        self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
+        self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, ordered_rudder: order });
     }
 
     /// Moves the ship to `to` (s), or to the crossing of the heading `watch` if that is earlier; `true` if the crossing

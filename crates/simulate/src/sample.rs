@@ -12,7 +12,7 @@ pub(crate) struct Sample {
     /// Heading after the lag of the gyrocompass, rad.
     pub gyro: f64,
     /// Total disturbance as equivalent rudder angle, rad.
-    pub disturbance: f64,
+    pub disturbance_rudder: f64,
     /// Factor 1 + g on the moment of the wind.
     pub gust_factor: f64,
 }

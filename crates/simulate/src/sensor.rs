@@ -57,7 +57,7 @@ pub struct Sensors {
     // Truncated at 0.45 periods, so that rows keep their order.
     /// Standard deviation of the sampling instants about their stamps.
     #[serde(rename = "jitter-s")]
-    pub jitter: f64,
+    pub sampling_jitter: f64,
     // Yaw rate, speed and wind in a row have the same age; the age is negative if the rudder is late.
     /// Age of the heading relative to the rudder in the same row.
     #[serde(rename = "heading-delay-s")]
@@ -136,7 +136,7 @@ impl Sensors {
         error::check_finite("sensor.yaw-rate-scale-error", self.yaw_rate_scale_error.unwrap_or(0.0))?;
         error::check_not_negative("sensor.rudder-noise-deg", self.rudder_noise)?;
         error::check_not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
-        error::check_time("sensor.jitter-s", self.jitter)?;
+        error::check_time("sensor.jitter-s", self.sampling_jitter)?;
         error::check_between("sensor.heading-delay-s", self.heading_delay, -MAX_TIME_S, MAX_TIME_S)?;
         self.drop_out.check()
     }

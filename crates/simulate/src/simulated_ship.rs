@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 use ship::ships::ShipModel;
 use ship::{Dynamics, FirstOrder, Particulars, Response, Ship};
 
@@ -22,7 +22,7 @@ pub enum Solver {
 pub struct SimulatedShip {
     dynamics: Arc<dyn Dynamics>,
     first_order: Option<FirstOrder>,
-    random_headings: Vec<NarrowBand>,
+    random_headings: Vec<NarrowBandProcess>,
     particulars: Option<Particulars>,
 }
 
@@ -85,7 +85,7 @@ impl SimulatedShip {
     }
 
     /// Random headings of the response model, as narrow-band processes.
-    pub fn random_headings(&self) -> &[NarrowBand] {
+    pub fn random_headings(&self) -> &[NarrowBandProcess] {
         &self.random_headings
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use trial::degrees::Degrees;
 use trial::manoeuvre::Manoeuvre;
 use trial::{DeclaredConditions, RecordOrigin, Trial};
@@ -46,7 +46,7 @@ pub struct Approach {
     pub rudder: f64,
     /// Straight run before the first execute.
     #[serde(rename = "lead-in-s")]
-    pub lead_in: f64,
+    pub lead_in_time: f64,
 }
 
 impl Approach {
@@ -55,7 +55,7 @@ impl Approach {
         error::check_finite("approach.heading-deg", self.heading)?;
         error::check_finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
         error::check_finite("approach.rudder-deg", self.rudder)?;
-        error::check_time("approach.lead-in-s", self.lead_in)
+        error::check_time("approach.lead-in-s", self.lead_in_time)
     }
 }
 
@@ -120,11 +120,11 @@ pub struct Truth {
     /// Rudder angle, rad, before any dead time of the ship.
     pub rudder: Vec<f64>,
     /// Total disturbance as equivalent rudder angle, rad.
-    pub disturbance: Vec<f64>,
+    pub disturbance_rudder: Vec<f64>,
     /// Speed through the water, m/s; `None` if the equations of the ship have no speed.
     pub speed: Option<Vec<f64>>,
     /// Orders from the beginning of the run to the end of the record, including orders before the first row.
-    pub executes: Vec<HelmOrder>,
+    pub execute_orders: Vec<HelmOrder>,
 }
 
 /// Simulated trial: record and truth.
@@ -196,7 +196,7 @@ impl Simulation {
         }
         // A negative dead time belongs to a record with a late clock, not to a ship.
         error::check_time("vessel.dead_time", self.ship.dynamics().dead_time())?;
-        let end = self.approach.lead_in + self.manoeuvre.duration();
+        let end = self.approach.lead_in_time + self.manoeuvre.duration();
         match (&self.manoeuvre, self.recording.duration) {
             (_, None) if end.is_finite() => {
                 error::check_at_most(scenario_keys(&self.manoeuvre)[1], end, self.recording.max_duration())?;
@@ -243,21 +243,23 @@ impl Simulation {
 
     /// `true` if no random input acts on ship, helmsman or the instants of the rows.
     pub(crate) fn is_repeatable(&self) -> bool {
-        let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
+        let Disturbances { wind, gusts, moment_random_walk: random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
         let seas = waves.is_some() || !self.ship.random_headings().is_empty();
         let compass = self.sensors.heading_noise > 0.0 || self.sensors.heading_wander.is_some();
         let display = self.helmsman.reads_display_every.is_some() && (compass || seas);
-        !weather && !display && self.sensors.jitter == 0.0
+        !weather && !display && self.sensors.sampling_jitter == 0.0
     }
 
     /// True run from the beginning to the end of the record. Fails for the reasons of [`run`](Self::run), except an
     /// invalid specification.
     pub(crate) fn true_run(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
-        let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
+        let approach = YawState { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, self.weather_cell_width, key);
         match self.closed_form() {
-            Some(ship) => self.drive(key, || ClosedForm::new(ship, weather(), approach, self.recording.period)),
+            Some(ship) => {
+                self.drive(key, || ClosedForm::new(ship, weather(), approach, self.recording.sampling_period))
+            }
             None => {
                 let step = match self.solver {
                     Solver::Automatic => None,
@@ -280,7 +282,7 @@ impl Simulation {
     }
 
     fn begin<P: Propagator>(&self, key: &StreamKey, propagator: P) -> Run<'_, P> {
-        let Approach { heading, rudder, lead_in, .. } = self.approach;
+        let Approach { heading, rudder, lead_in_time: lead_in, .. } = self.approach;
         let path = match &self.manoeuvre {
             Manoeuvre::Replay { rudder: Some(signal), .. } => RudderPath::from_signal(rudder, lead_in, signal),
             _ => RudderPath::constant(rudder),
@@ -297,7 +299,7 @@ impl Simulation {
         let mut run = self.begin(key, propagator());
         let start = match self.recording.after_execute {
             None => 0.0,
-            Some(number) => run.reach_execute(number)? + self.recording.offset.unwrap_or(0.0),
+            Some(number) => run.reach_execute(number)? + self.recording.first_row_offset.unwrap_or(0.0),
         };
         let mut rows = Sampler::at_row_times(start, &self.recording);
         let mut instruments = Sampler::at_instrument_times(start, &self.recording, &self.sensors, key);
@@ -336,7 +338,7 @@ impl Simulation {
         let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
         let gear = SteeringGear::with_rate(rate);
         let mut path = RudderPath::constant(self.approach.rudder);
-        executes.iter().for_each(|execute| path.order(execute.time, execute.order, &gear));
+        executes.iter().for_each(|execute| path.order(execute.time, execute.ordered_rudder, &gear));
         Some(path)
     }
 
@@ -396,8 +398,16 @@ impl Truth {
     /// Truth of the kept rows.
     fn keep(&self, kept: &[bool]) -> Self {
         let mut kept_rows = self.clone();
-        let Self { time, heading, yaw_rate, yaw_acceleration, rudder, disturbance, speed, executes: _ } =
-            &mut kept_rows;
+        let Self {
+            time,
+            heading,
+            yaw_rate,
+            yaw_acceleration,
+            rudder,
+            disturbance_rudder: disturbance,
+            speed,
+            execute_orders: _,
+        } = &mut kept_rows;
         let columns = [time, heading, yaw_rate, yaw_acceleration, rudder, disturbance];
         columns.into_iter().chain(speed).for_each(|column| measure::retain_flagged(column, kept));
         kept_rows
@@ -412,8 +422,8 @@ fn truth(samples: &[Sample], run: &RunResult) -> Truth {
         yaw_rate: column(|sample| sample.motion.yaw_rate),
         yaw_acceleration: column(|sample| sample.motion.yaw_acceleration),
         rudder: run.path.angles_at(samples.iter().map(|sample| sample.time)),
-        disturbance: column(|sample| sample.disturbance),
+        disturbance_rudder: column(|sample| sample.disturbance_rudder),
         speed: samples.iter().map(|sample| sample.motion.speed).collect(),
-        executes: run.executes.clone(),
+        execute_orders: run.executes.clone(),
     }
 }

@@ -3,7 +3,7 @@
 //! sampling.
 
 use rand::rngs::ChaCha8Rng;
-use ship::narrow_band::{NarrowBand, NarrowBandStep};
+use ship::narrow_band::{NarrowBandProcess, NarrowBandStep};
 
 use crate::disturbance::Disturbances;
 use crate::simulated_ship::SimulatedShip;
@@ -13,7 +13,7 @@ use crate::stream::{RngPurpose, StreamKey, normal};
 const PHASE_PER_CELL: f64 = 0.2;
 
 /// Width of a cell, s.
-pub(crate) fn cell_width(waves: &NarrowBand) -> f64 {
+pub(crate) fn cell_width(waves: &NarrowBandProcess) -> f64 {
     PHASE_PER_CELL / waves.frequency
 }
 
@@ -28,7 +28,7 @@ struct WavePath {
 }
 
 impl WavePath {
-    fn new(waves: &NarrowBand, mut rng: ChaCha8Rng) -> Self {
+    fn new(waves: &NarrowBandProcess, mut rng: ChaCha8Rng) -> Self {
         let width = cell_width(waves);
         let step = waves.step(width);
         let start = waves.stationary_sd().map(|sd| sd * normal(&mut rng));
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    const WAVES: NarrowBand = NarrowBand { sd: 0.01, frequency: 0.6, damping: 0.1 };
+    const WAVES: NarrowBandProcess = NarrowBandProcess { sd: 0.01, frequency: 0.6, damping: 0.1 };
 
     fn path(replicate: u64) -> WavePath {
         WavePath::new(&WAVES, StreamKey { seed: 5, cell: 1, replicate }.rng(RngPurpose::Waves))

@@ -83,13 +83,13 @@ impl Weather {
         let mut weather = Self {
             cell: WeatherCell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust_factor: [1.0; 2] },
             index: 0,
-            drift: disturbances.drift,
+            drift: disturbances.moment_drift,
             squall: disturbances.squall,
-            walk: (disturbances.random_walk > 0.0).then(|| MarkovChain {
+            walk: (disturbances.moment_random_walk > 0.0).then(|| MarkovChain {
                 rng: key.rng(RngPurpose::RandomWalk),
                 value: 0.0,
                 decay: 1.0,
-                kick: disturbances.random_walk * grid.sqrt(),
+                kick: disturbances.moment_random_walk * grid.sqrt(),
             }),
             gusts: disturbances
                 .gusts
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_random_walk_spreads_with_the_root_of_time() {
-        let disturbances = Disturbances { random_walk: 2e-3, ..Disturbances::default() };
+        let disturbances = Disturbances { moment_random_walk: 2e-3, ..Disturbances::default() };
         let runs = 400;
         let ends: Vec<f64> = (0..runs).map(|replicate| path(&disturbances, 401, replicate)[400][0]).collect();
         let variance = ends.iter().map(|x| x * x).sum::<f64>() / runs as f64;
@@ -190,13 +190,13 @@ mod tests {
 
     #[test]
     fn sources_do_not_disturb_one_another() {
-        let walk = Disturbances { random_walk: 1e-3, ..Disturbances::default() };
+        let walk = Disturbances { moment_random_walk: 1e-3, ..Disturbances::default() };
         let drift = 1e-5;
         let both = Disturbances {
-            drift,
+            moment_drift: drift,
             wind: Some(crate::disturbance::Wind {
                 moment: 0.01,
-                from: 0.0,
+                from_direction: 0.0,
                 speed: None,
                 gusting: Some(Gusting { sd: 0.2, correlation_time: 10.0 }),
             }),

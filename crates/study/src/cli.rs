@@ -48,10 +48,9 @@ struct With<R: Args> {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Identify a record with every (or the named) method: table, plot, fit.json
+    /// Find K and T of a record by six methods, or by the named ones: table, fit.json, report, plots
     Fit(With<FitRequest>),
-    /// Find the effects that a first-order model lacks: fit, examine the residual, name effects, add them: trace.json,
-    /// report, plots
+    /// Find and name the effects that a first-order model lacks: table, trace.json, report, plots
     Trace(With<TraceRequest>),
     /// Predict other manoeuvres from fit.json or trace.json, with intervals: predict.json, report, plots
     Predict(With<PredictRequest>),
@@ -67,7 +66,7 @@ enum Command {
     Score(With<score::ScoreRequest>),
     /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
     Bench(With<bench::BenchRequest>),
-    /// Resolve scenario files and run nothing
+    /// Check scenario files and count their cells, methods and trials; nothing is run
     Check(With<check::CheckRequest>),
     /// List methods, effects, ships, manoeuvres, sensors, keys, column names and priors
     List(With<list::ListRequest>),
@@ -92,17 +91,17 @@ impl<R: Args> With<R> {
 
     /// Starts the threads and runs a command that works on them. Fails if the system refuses the threads.
     fn work(&self, run: impl FnOnce(&R, &CommonOptions) -> Result<(), Failure>) -> Result<(), Failure> {
-        threads::start(&self.common)?;
+        threads::start_threads(&self.common)?;
         run(&self.request, &self.common)
     }
 }
 
 /// Runs the program and returns its exit code: 0 on success, 1 if the work fails, 2 for wrong input, 130 after Ctrl-C.
 pub fn main() -> ExitCode {
-    interrupt::install();
+    interrupt::install_handler();
     let arguments: Vec<OsString> = std::env::args_os().collect();
     if asks_for_json(&arguments) {
-        failures::use_json();
+        failures::report_failures_as_json();
     }
     match parse(&arguments).and_then(answer) {
         Ok(()) => ExitCode::SUCCESS,
@@ -133,7 +132,7 @@ fn parse(arguments: &[OsString]) -> Result<Cli, Failure> {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             usage.exit()
         }
-        _ if failures::uses_json() => usage_failure(&usage),
+        _ if failures::reports_failures_as_json() => usage_failure(&usage),
         // An argument may hold control characters, which the writer of all other messages escapes.
         _ => Failure::input(usage.render().to_string().trim_end().trim_start_matches("error: ")),
     })
@@ -159,7 +158,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
     let Some(command) = cli.command else {
         let none = "no scenario is named; try `study scenarios/yukun.toml` or `study --help`";
         let scenario = cli.scenario.ok_or_else(|| Failure::input(none))?;
-        threads::start(&cli.common)?;
+        threads::start_threads(&cli.common)?;
         return run::run(&scenario, &cli.request, &cli.common);
     };
     match command {

@@ -2,7 +2,7 @@
 
 use ::trace::EffectId;
 use campaign::benchmark::BenchTask;
-use campaign::scenario::{STRAIGHT_ON, TRACE};
+use campaign::scenario::{STRAIGHT_ON_ID, TRACE_ID};
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command, Error};
 use identify::registry;
@@ -48,7 +48,7 @@ pub fn method_names_or_all() -> Vec<String> {
 
 /// Ids of the methods of a scenario: those of [`method_names`], a trace, and the straight-on forecast.
 pub fn scenario_method_names() -> Vec<String> {
-    method_names().into_iter().chain([TRACE, STRAIGHT_ON].map(str::to_owned)).collect()
+    method_names().into_iter().chain([TRACE_ID, STRAIGHT_ON_ID].map(str::to_owned)).collect()
 }
 
 /// Ids of the tasks of the benchmark.

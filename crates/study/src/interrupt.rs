@@ -19,7 +19,7 @@ pub fn exit_with_failure(failure: &Failure) -> ! {
 
 /// Installs the handler of Ctrl-C for the program `study`; Python handles Ctrl-C itself. Without a handler the signal
 /// ends the program.
-pub fn install() {
+pub fn install_handler() {
     let handler = || {
         let first = !ASKED.swap(true, Ordering::SeqCst);
         if !(first && LISTENING.load(Ordering::SeqCst)) {

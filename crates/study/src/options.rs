@@ -17,12 +17,12 @@ use clap::{Args, ValueEnum};
 use report::Table;
 use ship::effects::Formula;
 use trial::Manoeuvre;
-use trial::clock::Stamp;
+use trial::clock::TimeStamp;
 
 /// Options for the run of a scenario.
 #[derive(Debug, Clone, Args)]
 pub struct RunRequest {
-    /// Run part I of N only; all parts may share one folder, or be copied into one, and `study report` makes its page
+    /// Run only part I of N; give all parts one folder, or copy them into one, and let `study report` make the page
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
     /// Discard rows of an earlier run in the folder instead of continuing them
@@ -139,7 +139,7 @@ pub enum TimePoint {
     /// Seconds on the clock of the record.
     Seconds(f64),
     /// Reading of the ship's clock, and the text that was given for it.
-    Clock(Stamp, String),
+    Clock(TimeStamp, String),
 }
 
 impl FromStr for TimePoint {
@@ -149,7 +149,7 @@ impl FromStr for TimePoint {
         if let Some(seconds) = text.parse().ok().filter(|seconds: &f64| seconds.is_finite()) {
             return Ok(Self::Seconds(seconds));
         }
-        let stamp = Stamp::parse(text).filter(Stamp::has_time);
+        let stamp = TimeStamp::parse(text).filter(TimeStamp::has_time);
         stamp
             .map(|stamp| Self::Clock(stamp, text.to_owned()))
             .ok_or_else(|| "expected seconds, or a time such as 14:03:05 or 2026-11-20T14:03:05".to_owned())
@@ -176,8 +176,8 @@ pub struct FitRequest {
     /// Records of one ship, identified together; a folder means all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
-    /// Fit every record alone: one row each, or with --format json one line of JSON each, on standard output only; a
-    /// record that cannot be read is a row
+    /// Fit every record alone and print one row for each (with --format json one line of JSON), also for a record that
+    /// cannot be read; no file is written
     #[arg(long, conflicts_with_all = ["validate", "priors", "with_columns", "trial", "from", "until", "out",
         "draws_file"])]
     pub each: bool,

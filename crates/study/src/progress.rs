@@ -50,21 +50,22 @@ pub struct ProgressSteps {
     remaining_steps: u64,
     /// Number of these that are finished.
     done: AtomicU64,
-    side_by_side: usize,
+    /// Number of steps that run at a time.
+    parallel: usize,
     begin: Instant,
     /// `true` if the forecast has been printed, or is not to be printed.
     is_forecast_done: AtomicBool,
 }
 
 impl ProgressSteps {
-    /// Progress over `most` steps, of which `done` are complete; `side_by_side` run at a time.
-    pub fn new(label: &'static str, most: u64, done: u64, side_by_side: usize, quiet: bool) -> Self {
+    /// Progress over `total` steps, of which `done` are complete; `parallel` run at a time.
+    pub fn new(label: &'static str, total: u64, done: u64, parallel: usize, quiet: bool) -> Self {
         Self {
-            bar: bar(label, most, quiet).with_position(done).with_elapsed(Duration::ZERO),
+            bar: bar(label, total, quiet).with_position(done).with_elapsed(Duration::ZERO),
             label,
-            remaining_steps: most.saturating_sub(done),
+            remaining_steps: total.saturating_sub(done),
             done: AtomicU64::new(0),
-            side_by_side,
+            parallel,
             begin: Instant::now(),
             is_forecast_done: AtomicBool::new(quiet || std::io::stderr().is_terminal()),
         }
@@ -76,7 +77,7 @@ impl ProgressSteps {
         let (done, elapsed) = (self.done.fetch_add(1, Ordering::Relaxed) + 1, self.begin.elapsed());
         if elapsed >= MIN_ELAPSED && !self.is_forecast_done.swap(true, Ordering::Relaxed) {
             // Steps that run at the same time finish at about the same time as the first.
-            let line = forecast(self.label, self.remaining_steps, done.max(self.side_by_side as u64), elapsed);
+            let line = forecast(self.label, self.remaining_steps, done.max(self.parallel as u64), elapsed);
             line.iter().for_each(|line| screen::print_to_stderr(line));
         }
     }

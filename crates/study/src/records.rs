@@ -8,8 +8,8 @@ use report::number::fixed;
 use ship::angle::KNOT;
 use ship::vessel::prior::HullParticulars;
 use ship::{Particulars, ShortNumber};
-use trial::file::{STDIN, display_path};
-use trial::{Channel, Log, ReadError, ReadRecord, RecordOrigin, Sidecar, SidecarError, Trial};
+use trial::file::{STDIN_PATH, display_path};
+use trial::{Channel, InstrumentLog, ReadError, ReadRecord, RecordOrigin, Sidecar, SidecarError, Trial};
 
 use crate::options::{ReadingOptions, TimePoint};
 use campaign::failure::{Failure, FailureParts, OnPath};
@@ -24,7 +24,7 @@ const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "
 ///
 /// Fails if a folder has no record, or if standard input is to be read twice.
 pub fn record_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    if paths.iter().filter(|path| *path == Path::new(STDIN)).count() > 1 {
+    if paths.iter().filter(|path| *path == Path::new(STDIN_PATH)).count() > 1 {
         return Err(Failure::input("- is given twice, but standard input holds one record; give files for the others"));
     }
     let mut files = Vec::new();
@@ -65,7 +65,7 @@ pub fn open_log(
     columns: Option<&Path>,
     parts: &[PathBuf],
     warnings: &mut Warnings,
-) -> Result<Log, Failure> {
+) -> Result<InstrumentLog, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
         return Err(Failure::input(format!(
@@ -77,7 +77,7 @@ pub fn open_log(
     // Folders and figures are named after the record.
     name::study_name(display_path(path))?;
     let sidecar = Sidecar::path_for(path, columns);
-    let mut log = Log::open(path, sidecar.as_deref(), parts).map_err(refused)?;
+    let mut log = InstrumentLog::open(path, sidecar.as_deref(), parts).map_err(refused)?;
     warnings.extend(warning_source(display_path(path)).attach_to(std::mem::take(&mut log.warnings)));
     Ok(log)
 }
@@ -148,7 +148,7 @@ fn read(path: &Path, options: &ReadingOptions, warnings: &mut Warnings) -> Resul
 ///
 /// Fails if that part is not a record, or if the log holds several zig-zags and none is selected.
 pub fn trial_from_log(
-    log: Log,
+    log: InstrumentLog,
     path: &Path,
     options: &ReadingOptions,
     warnings: &mut Warnings,
@@ -181,13 +181,13 @@ fn with_declared(trial: Trial, path: &Path, options: &ReadingOptions) -> Result<
     let options = &options.ship.form;
     options.apply(&mut conditions.hull);
     conditions.hull.draught = conditions.hull.draught.or(conditions.trial.mean_draught());
-    if let Some(draught) = conditions.hull.draught.filter(|draught| !conditions.trial.admits(*draught)) {
+    if let Some(draught) = conditions.hull.draught.filter(|draught| !conditions.trial.admits_draught(*draught)) {
         let [fore, aft] = conditions.trial.draughts().unwrap_or_default();
         let text = format!("draught-m = {draught} is not between the draughts fore, {fore} m, and aft, {aft} m");
         return Err(Failure::in_file(path, format!("{text}; give --draught-m as well, or leave these out")));
     }
     let trial = trial.with_conditions(conditions);
-    if let Some(key) = options.first() {
+    if let Some(key) = options.first_key() {
         let advice = "give --length-m as well, or declare it under [ship] in a sidecar";
         let unknown = || Failure::in_file(path, format!("--{key} needs length and speed of the ship; {advice}"));
         trial.hull().ok_or_else(unknown)?.check().map_err(|error| Failure::in_file(path, error))?;
@@ -210,7 +210,7 @@ pub fn trial_particulars_entry(trial: &Trial) -> TrialParticularsEntry {
 /// Requested time on the clock of a record, s; `None` if none is requested.
 ///
 /// Fails for a time of day that the clock does not show.
-fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f64>, Failure> {
+fn moment(log: &InstrumentLog, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f64>, Failure> {
     match asked {
         None => Ok(None),
         Some(TimePoint::Seconds(seconds)) => Ok(Some(*seconds)),
@@ -231,7 +231,7 @@ fn moment(log: &Log, path: &Path, asked: Option<&TimePoint>) -> Result<Option<f6
 ///
 /// Fails if no speed is given and the record has none there.
 fn ship(
-    log: &Log,
+    log: &InstrumentLog,
     path: &Path,
     options: &ReadingOptions,
     warnings: &mut Warnings,
@@ -254,7 +254,7 @@ fn ship(
 /// Warning with the reason why records with a speed or positions give no track; `None` if they give one or have
 /// neither.
 pub fn missing_track_warning(shown: &RecordFacts) -> Option<Warning> {
-    shown.no_track.as_ref().map(|why| WarningCode::NoTrack.warning(why))
+    shown.no_track_reason.as_ref().map(|why| WarningCode::NoTrack.warning(why))
 }
 
 /// Message on a rudder that was logged `late` seconds late, which shows as a negative dead time; with the remedy.

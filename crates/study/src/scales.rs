@@ -2,7 +2,7 @@
 
 use report::number::significant;
 use ship::Particulars;
-use trial::{Scales, Trial};
+use trial::{ShipScales, Trial};
 
 use campaign::failure::Failure;
 
@@ -13,14 +13,14 @@ pub struct RescaledRecords {
     /// Held-out records, at the same scale.
     pub held_out: Vec<Trial>,
     /// Original scales of the records; `None` if the declared ones do not differ.
-    pub scales: Option<Scales>,
+    pub scales: Option<ShipScales>,
 }
 
 /// Brings fitted and held-out records to the scale of the first if their scales differ.
 ///
 /// Fails if the scales differ and a record does not declare length and speed.
 pub fn to_common_scale(trials: &[Trial], held_out: &[Trial]) -> Result<RescaledRecords, Failure> {
-    let scales = Scales::from_trials(trials.iter().chain(held_out)).map_err(Failure::input)?;
+    let scales = ShipScales::from_trials(trials.iter().chain(held_out)).map_err(Failure::input)?;
     let at_one = |records: &[Trial]| match &scales {
         Some(scales) => scales.to_first_scale(records.to_vec()),
         None => records.to_vec(),
@@ -39,7 +39,7 @@ impl RescaledRecords {
         let scales = self.scales.as_ref()?;
         let first = scales.particulars[0];
         let scale_part = |(scale, ship): (usize, &Particulars)| {
-            let count = scales.indices.iter().filter(|record| **record == scale).count();
+            let count = scales.scale_indices.iter().filter(|record| **record == scale).count();
             let records = if count == 1 { "record" } else { "records" };
             let factor = significant(ship.similarity_factor_to(first, [1, 0]), 4);
             let times = if scale == 0 { String::new() } else { format!(", time × {factor}") };

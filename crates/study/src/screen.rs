@@ -62,7 +62,7 @@ fn coloured(lines: &str) -> String {
 /// Output of a command in every format.
 pub struct CommandOutput<'a> {
     /// Text before and after the table.
-    pub frame: [&'a str; 2],
+    pub texts_around_table: [&'a str; 2],
     /// The table.
     pub table: &'a Table,
     /// Notes below the table, such as the path of the file.
@@ -76,7 +76,7 @@ pub struct CommandOutput<'a> {
 ///
 /// Fails as [`print_lines`] does.
 pub fn print_output(common: &CommonOptions, output: &CommandOutput, warnings: &[impl Display]) -> Result<(), Failure> {
-    let CommandOutput { frame: [before, behind], table, notes, document } = output;
+    let CommandOutput { texts_around_table: [before, behind], table, notes, document } = output;
     let note = |line: &str| {
         if !common.quiet {
             print_to_stderr(line)

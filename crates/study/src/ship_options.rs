@@ -88,7 +88,7 @@ pub struct FormOptions(Vec<(&'static Particular, f64)>);
 
 impl FormOptions {
     /// Key of the first given particular; `None` if none is given.
-    pub fn first(&self) -> Option<&'static str> {
+    pub fn first_key(&self) -> Option<&'static str> {
         self.0.first().map(|(particular, _)| particular.key)
     }
 

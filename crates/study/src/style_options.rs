@@ -64,7 +64,7 @@ pub struct StudyFigureOptions {
 /// Selection of the figures of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum FigureChoice {
-    /// Those the scenario names in `output.figures`; all if it names none
+    /// Those that `output.figures` of the scenario names; all figures if it names none
     #[default]
     Named,
     /// All there are

@@ -8,14 +8,14 @@ use crate::options::{CommonOptions, MAX_THREADS};
 const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// Number of processors available to this program.
-pub fn cores() -> usize {
+pub fn core_count() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Number of threads for parallel work: that of the option, else of the environment, else one for every processor.
-pub fn count(common: &CommonOptions) -> usize {
+pub fn thread_count(common: &CommonOptions) -> usize {
     let variable = std::env::var(THREADS).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
-    common.threads.map_or_else(|| threads_of(variable.as_deref(), cores()), usize::from)
+    common.threads.map_or_else(|| threads_of(variable.as_deref(), core_count()), usize::from)
 }
 
 /// Number of threads on a machine with the given `cores` and this value of the `variable` [`THREADS`]: a number above
@@ -27,8 +27,8 @@ fn threads_of(variable: Option<&str>, cores: usize) -> usize {
 }
 
 /// Starts the threads of all parallel work. Fails if the system refuses them.
-pub fn start(common: &CommonOptions) -> Result<(), Failure> {
-    let threads = count(common);
+pub fn start_threads(common: &CommonOptions) -> Result<(), Failure> {
+    let threads = thread_count(common);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()

@@ -7,12 +7,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use document::HeadingNoise;
-use document::trace::Document;
+use document::trace::AnalysisDocument;
 use identify::hull::HullEstimate;
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use ship::{Regressor, Response};
+use ship::{RegressorChannel, Response};
 use trial::{Channel, Trial};
 
 use crate::average::{FittedAverage, ModelAverage};
@@ -43,7 +43,7 @@ use crate::structures::{self, Structures};
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// Document (`trace.json`).
-    pub document: Document,
+    pub document: AnalysisDocument,
     /// First-order response (constant K and T) with the least heading error.
     pub base: Estimate,
     /// Comparison of base and structure average on every fitted record.
@@ -56,9 +56,9 @@ pub struct Analysis {
     /// Structures with their probabilities.
     pub structures: Structures,
     /// Full model with the most probable noise law.
-    pub full: FullModel,
+    pub full_model: FullModel,
     /// Heading noise under that law, averaged over the records.
-    pub noise: HeadingNoise,
+    pub heading_noise: HeadingNoise,
     /// Hull models of three degrees of freedom, averaged with the structures; empty if none is fitted.
     pub hulls: Vec<HullEstimate>,
     pub(crate) problem: FittedRecords,
@@ -101,7 +101,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
     let is_there = |id: &&EffectId| candidates.iter().any(|term| term.effect.id() == id.as_str());
     let Some(&effect) = selection.required.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = selection.effects().into_iter().filter(|form| form.id() == effect.as_str()).collect();
-    let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::missing_message));
+    let lacking = forms.iter().find_map(|form| form.needs().map(RegressorChannel::missing_message));
     let reason = match forms.iter().any(|form| form.is_random()) {
         true => "it is a noise law, which every trace tries anyway",
         false => lacking.unwrap_or("the records cannot show it"),
@@ -134,7 +134,7 @@ fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(),
 /// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
 /// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");
 /// let errors = &analysis.identification[0];
-/// assert!(errors.after.errors.heading < 0.5 * errors.before.errors.heading);
+/// assert!(errors.average_replay.errors.heading_rmse < 0.5 * errors.base_replay.errors.heading_rmse);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
@@ -165,20 +165,22 @@ fn analyse(
     let (trials, outliers) = without_spikes(&trials);
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = FittedBase::fit(&trials)?;
-    let time = candidates::ship_time(&trials, base.estimate.response.K_over_T);
-    let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
-    let candidates = candidates_of(&records, &trials, time, settings)?;
-    let problem = FittedRecords::new(records, base.estimate.response.inverse_T, time);
+    let ship_length_time = candidates::ship_length_time(&trials, base.estimate.response.K_over_T);
+    let records: Vec<PreparedRecord> =
+        trials.iter().map(|trial| PreparedRecord::averaged(trial, ship_length_time)).collect();
+    let candidates = candidates_of(&records, &trials, ship_length_time, settings)?;
+    let problem = FittedRecords::new(records, base.estimate.response.inverse_T, ship_length_time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_noises);
-    let members = structures.members();
-    let compare = |hulls: &[HullEstimate]| compare_fitted(&trials, &base, &full.law, &members, hulls, settings, time);
+    let (members, noise_law) = (structures.weighted_members(), &full.noise_law);
+    let compare =
+        |hulls: &[HullEstimate]| compare_fitted(&trials, &base, noise_law, &members, hulls, settings, ship_length_time);
     let (mut identification, mut keeps_base) = compare(&[])?;
     let attribution = attribute(&problem, &full, &structures, &candidates, settings);
     let residual_analysis =
         ResidualAnalysis::new(&problem, &full, &structures, &identification, &trials, &attribution, &rudder_noises);
-    let hulls = hulls::fit(&trials, settings, &identification, &residual_analysis);
+    let hulls = hulls::fit_supported_hulls(&trials, settings, &identification, &residual_analysis);
     (identification, keeps_base) = if hulls.is_empty() { (identification, keeps_base) } else { compare(&hulls)? };
-    let averaged = FittedAverage { members: &members, hulls: &hulls, law: &full.law, fitted_record: None, time };
+    let averaged = FittedAverage { members: &members, hulls: &hulls, noise_law, fitted_record: None, ship_length_time };
     let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
     let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
     let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, observer);
@@ -187,7 +189,7 @@ fn analyse(
         trials: &trials,
         settings,
         base: &base,
-        full: &full,
+        full_model: &full,
         structures: &structures,
         candidates: &candidates,
         identification: &identification,
@@ -195,21 +197,21 @@ fn analyse(
         leave_one_out: &leave_one_out,
         residual_analysis: &residual_analysis,
         attribution: &attribution,
-        outliers: &outliers,
+        outlier_times: &outliers,
         rudder_noises: &rudder_noises,
         keeps_base,
         has_hulls: !hulls.is_empty() && !keeps_base,
-        problem: &problem,
+        fitted_records: &problem,
     };
     Ok(Analysis {
         document: parts.document(),
-        noise: HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default(),
+        heading_noise: HeadingNoise::mean(&parts.heading_noise()).unwrap_or_default(),
         base: base.estimate,
         identification,
         validation: held_out,
         leave_one_out,
         structures,
-        full,
+        full_model: full,
         hulls,
         problem,
         candidates,
@@ -228,13 +230,13 @@ fn weighed(
 ) -> (FullModel, Structures) {
     let has_waves = candidates::has_waves(trials, &settings.selection);
     let choose = |kinds: &[CorrelatedNoise]| {
-        let fulls = full::fit(problem, base, candidates, has_waves, kinds);
+        let fulls = full::fit_full_models(problem, base, candidates, has_waves, kinds);
         let fulls = rudder::with_rudder_noise(fulls, problem, base.estimate.response.K_over_T, rudder_noises);
         structures::weigh_structures(problem, fulls, candidates, &settings.selection, settings.rule, base.mean_square())
     };
     let kinds: Vec<CorrelatedNoise> = CorrelatedNoise::all().collect();
     let best = choose(&kinds);
-    if !trials.iter().all(Trial::is_calm) || !best.0.law.is_random_moment() {
+    if !trials.iter().all(Trial::is_calm) || !best.0.noise_law.is_random_moment() {
         return best;
     }
     // In a calm there is no random yaw moment.
@@ -251,9 +253,9 @@ fn candidates_of(
     time: f64,
     settings: &Settings,
 ) -> Result<Vec<Arc<Term>>, TraceError> {
-    let mut candidates = candidates::all(records, trials, time, &settings.selection);
+    let mut candidates = candidates::candidate_terms(records, trials, time, &settings.selection);
     refuse_lacking(&candidates, &settings.selection)?;
-    candidates.extend(empirical::candidates(records, trials, time).take(settings.monomial_count));
+    candidates.extend(empirical::monomial_terms(records, trials, time).take(settings.monomial_count));
     Ok(candidates)
 }
 
@@ -273,14 +275,15 @@ fn compare_fitted(
         let record = PreparedRecord::unaveraged(trial);
         let before = replay_base(trial, &record, response, depth)?;
         let is_base = hulls.is_empty() && members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
-        let averaged = FittedAverage { members, hulls, law, fitted_record: Some(number), time };
+        let averaged =
+            FittedAverage { members, hulls, noise_law: law, fitted_record: Some(number), ship_length_time: time };
         let mut after = averaged.replay_on(trial, &record, &initial_state_guesses(trial, response), depth)?;
         if is_base {
             // No effect is added: keep the closed-form replay of the base.
-            let band = after.band;
-            after = ReplayResult { band, ..before.clone() };
+            let band = after.band_half_width;
+            after = ReplayResult { band_half_width: band, ..before.clone() };
         }
-        Ok(RecordComparison { before, after })
+        Ok(RecordComparison { base_replay: before, average_replay: after })
     };
     let all: Result<Vec<RecordComparison>, TraceError> = trials.par_iter().enumerate().map(compare).collect();
     let mut all = all?;
@@ -295,8 +298,8 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     let keeps_base = after > before;
     if keeps_base {
         for comparison in all {
-            let band = comparison.after.band.take();
-            comparison.after = ReplayResult { band, ..comparison.before.clone() };
+            let band = comparison.average_replay.band_half_width.take();
+            comparison.average_replay = ReplayResult { band_half_width: band, ..comparison.base_replay.clone() };
         }
     }
     keeps_base
@@ -318,14 +321,14 @@ pub struct PlausibleStructure {
 impl Analysis {
     /// Normalised innovations of the most probable structure on every fitted record.
     pub fn innovations(&self) -> Vec<Innovations> {
-        let best = self.structures.all.first();
-        best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full.law))
+        let best = self.structures.weighed.first();
+        best.map_or_else(Vec::new, |best| innovations(&self.problem, &best.fit.residual, &self.full_model.noise_law))
     }
 
     /// Shape analysis of the residual of the most probable structure; `None` without a structure, or if its
     /// sensitivities are linearly dependent.
     pub fn shapes(&self) -> Option<ShapeAnalysis> {
-        shape::analyse_shapes(&self.problem, &self.structures.all.first()?.fit, &self.full.law)
+        shape::analyse_shapes(&self.problem, &self.structures.weighed.first()?.fit, &self.full_model.noise_law)
     }
 
     /// Members of the structure average for predictions, the most probable first.
@@ -340,22 +343,28 @@ impl Analysis {
             });
             PlausibleStructure { weight, response: structure.response(None, &theta), fitted, covariance }
         };
-        self.structures.members().into_iter().map(member).collect()
+        self.structures.weighted_members().into_iter().map(member).collect()
     }
 
     /// Average of structures and hulls for replays, without the terms of single records.
     pub fn average(&self) -> ModelAverage {
-        self.averaged(&self.structures.members()).average()
+        self.averaged(&self.structures.weighted_members()).average()
     }
 
     /// Averaged model for a record that was not fitted.
     fn averaged<'a>(&'a self, members: &'a [(f64, &'a StructureFit)]) -> FittedAverage<'a> {
-        FittedAverage { members, hulls: &self.hulls, law: &self.full.law, fitted_record: None, time: self.problem.time }
+        FittedAverage {
+            members,
+            hulls: &self.hulls,
+            noise_law: &self.full_model.noise_law,
+            fitted_record: None,
+            ship_length_time: self.problem.ship_length_time,
+        }
     }
 
     /// Response of the most probable structure, without the terms of single records; the base if there is no structure.
     pub fn ship(&self) -> Response {
-        let members = self.structures.members();
+        let members = self.structures.weighted_members();
         members.first().map_or_else(
             || Response::first_order_ship(self.base.response),
             |(_, fit)| fit.structure.response(None, &fit.theta),
@@ -365,9 +374,9 @@ impl Analysis {
     /// Replay of the average on a noise-free trial, from the best initial state near `start` (rad, rad/s). Its band
     /// covers the errors of parameters and structures only. `None` if no replay is finite.
     pub fn replay_in_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
-        let members = self.structures.members();
+        let members = self.structures.weighted_members();
         let calm = NoiseLaw::white(1, 1e-16);
-        let averaged = FittedAverage { law: &calm, ..self.averaged(&members) };
+        let averaged = FittedAverage { noise_law: &calm, ..self.averaged(&members) };
         averaged.replay_on(trial, &PreparedRecord::unaveraged(trial), &[start], ReplayDepth::Windows).ok()
     }
 }

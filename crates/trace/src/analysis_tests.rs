@@ -11,7 +11,7 @@ use trial::{DeclaredConditions, DeclaredWeather, Trial};
 use crate::structures::WeighedStructure;
 use crate::testing::{TrialPlan, noisy, of_columns, record, ship, wandering};
 use crate::{
-    Analysis, EffectId, FoldObserver, Selection, Settings, Verdict, WeightingRule, trace, trace_with_observer,
+    Analysis, EffectId, FoldObserver, Selection, Settings, TraceVerdict, WeightingRule, trace, trace_with_observer,
 };
 
 /// Record of a ship with cubic damping.
@@ -45,15 +45,15 @@ fn an_inclusion_path_leads_from_the_base_to_the_noise() {
     let path = analysis.inclusion_path().expect("something is missing");
     let ids: Vec<Option<&str>> = path.steps.iter().map(|step| step.term.map(|(id, ..)| id)).collect();
     assert_eq!(ids, [None, Some("nonlinear_damping")]);
-    let [base, last] = [0, 1].map(|step: usize| to_deg(path.steps[step].rmse));
+    let [base, last] = [0, 1].map(|step: usize| to_deg(path.steps[step].heading_rmse));
     assert!((0.08..0.12).contains(&last) && base > 1.3 * last, "{base} {last}");
-    let before = &analysis.identification[0].before.errors.heading;
+    let before = &analysis.identification[0].base_replay.errors.heading_rmse;
     assert!(
         (base / to_deg(*before) - 1.0).abs() < 0.05,
         "the base is the nearest response: {base} {}",
         to_deg(*before)
     );
-    assert!(path.steps.iter().all(|step| step.residual.len() == path.time.len()));
+    assert!(path.steps.iter().all(|step| step.heading_residual.len() == path.row_times.len()));
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn several_records_are_left_out_in_turn() {
     let analysis = traced(&trials);
     assert_eq!(analysis.leave_one_out.len(), 3);
     for fold in analysis.leave_one_out.iter().flatten() {
-        let [before, after] = [&fold.before, &fold.after].map(|on| on.errors.heading.to_degrees());
+        let [before, after] = [&fold.base_replay, &fold.average_replay].map(|on| on.errors.heading_rmse.to_degrees());
         assert!(before > 0.3 && after < 0.25 * before, "{before} and {after} deg");
     }
 }
@@ -98,7 +98,7 @@ fn the_error_against_the_horizon_is_that_of_replays_begun_anew() {
     let horizons = &error.validation[0].horizons;
     let windows: Vec<f64> = horizons.iter().map(|entry| entry.horizon_s).collect();
     assert_eq!(windows, [5.0, 10.0, 20.0, 40.0, 60.0, 80.0, 160.0, 300.0]);
-    let (residual, base) = (&analysis.validation[0].before.replay.residual, analysis.base.response);
+    let (residual, base) = (&analysis.validation[0].base_replay.replay.residual, analysis.base.response);
     for entry in &horizons[..7] {
         let expected = to_deg(less_two_solutions(residual, entry.horizon_s as usize, base.inverse_T.recip()));
         assert!((entry.before_deg / expected - 1.0).abs() < 0.02, "{entry:?}: {expected}");
@@ -128,12 +128,12 @@ fn probabilities_move_with_the_prior_odds() {
     let damping: Arc<dyn Effect> = listed_effect("nonlinear_damping", "r³");
     let trial = record(&ship(vec![(damping, vec![25.0])]), TrialPlan { noise_deg: 0.2, ..TrialPlan::default() });
     let analysis = traced(std::slice::from_ref(&trial));
-    let (document, all) = (&analysis.document, &analysis.structures.all);
+    let (document, all) = (&analysis.document, &analysis.structures.weighed);
     let of_other_laws = 1.0 - all.iter().map(|weighed| weighed.weight).sum::<f64>();
     assert!(of_other_laws.abs() < 1e-12, "other laws of the noise have no part here: {of_other_laws}");
     let weight = |weighed: &WeighedStructure, factor: f64| {
         let odds = weighed.fit.structure.terms.iter().map(|term| term.log_odds + factor.ln()).sum::<f64>();
-        (weighed.fit.evidence + odds - all[0].fit.evidence).exp()
+        (weighed.fit.log_evidence + odds - all[0].fit.log_evidence).exp()
     };
     let mut moved = 0;
     for candidate in document.candidates.iter().filter(|candidate| !candidate.probability_by_prior_odds.is_empty()) {
@@ -206,7 +206,7 @@ fn a_formula_is_named_where_it_acts() {
     let effect = &analysis.document.effects[0];
     assert_eq!(effect.form, "c * tanh(k * psi)");
     let errors = &analysis.identification[0];
-    assert!(errors.after.errors.heading < 0.3 * errors.before.errors.heading);
+    assert!(errors.average_replay.errors.heading_rmse < 0.3 * errors.base_replay.errors.heading_rmse);
     let other = trace(&[damped(TrialPlan::default())], &[], &settings).expect("a base");
     assert_eq!(named(&other), ["nonlinear_damping"]);
     assert!(other.document.candidates.iter().any(|candidate| candidate.id == "bank"), "it is on the list");
@@ -229,8 +229,10 @@ fn bands_hold_the_record() {
     let other = damped(TrialPlan { seed: 5, rudder_deg: 12.0, ..TrialPlan::default() });
     let analysis = trace(&[trial], &[other], &Settings::default()).expect("a base");
     for record in analysis.identification.iter().chain(&analysis.validation) {
-        let (coverage, width) =
-            (record.after.coverage().expect("a band").share(), record.after.width().expect("a band").to_degrees());
+        let (coverage, width) = (
+            record.average_replay.band_coverage().expect("a band").share(),
+            record.average_replay.band_width().expect("a band").to_degrees(),
+        );
         assert!((0.85..=1.0).contains(&coverage) && (0.15..0.6).contains(&width), "{coverage}, {width} deg");
     }
 }
@@ -239,7 +241,7 @@ fn bands_hold_the_record() {
 fn a_document_is_read_as_it_was_written() {
     let analysis = traced(&[damped(TrialPlan::default())]);
     let text = serde_json::to_string(&analysis.document).expect("plain data");
-    let again: crate::Document = serde_json::from_str(&text).expect("the same");
+    let again: crate::AnalysisDocument = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);
     // A document of an earlier version has no probabilities by prior odds.
     let mut earlier = serde_json::to_value(&again).expect("plain data");
@@ -249,7 +251,7 @@ fn a_document_is_read_as_it_was_written() {
         entries.for_each(|entry| drop(remove(entry, "probability_by_prior_odds")));
     }
     assert!(remove(&mut earlier["prior"], "odds_factors").is_some());
-    let earlier: crate::Document = serde_json::from_value(earlier).expect("an earlier document");
+    let earlier: crate::AnalysisDocument = serde_json::from_value(earlier).expect("an earlier document");
     assert!(earlier.prior.odds_factors.is_empty() && earlier.effects[0].probability_by_prior_odds.is_empty());
 }
 
@@ -260,7 +262,7 @@ fn nothing_is_named_for_noise_of_the_rudder() {
     let clean = record(&ship(Vec::new()), TrialPlan::default());
     let rudder = noisy(clean.rudder(), 0.3);
     let document = traced(&[of_columns(clean.time().to_vec(), clean.heading().to_vec(), rudder)]).document;
-    assert_eq!((document.verdict, document.effects.len()), (Verdict::Clean, 0), "{}", document.headline);
+    assert_eq!((document.verdict, document.effects.len()), (TraceVerdict::Clean, 0), "{}", document.headline);
     assert!(document.noise[0].rudder_sd_deg.is_some_and(|sd| (sd - 0.3).abs() < 0.05), "{:?}", document.noise);
 }
 
@@ -270,7 +272,7 @@ fn a_name_falls_where_a_shape_does_better() {
     let tug: Arc<dyn Effect> = Formula::parse("tug = c * max(psi, 0)").expect("a formula");
     let plan = TrialPlan { noise_deg: 0.1, seed: 5, ..TrialPlan::default() };
     let document = traced(&[record(&ship(vec![(tug, vec![-0.3])]), plan)]).document;
-    assert_eq!((document.verdict, document.effects.len()), (Verdict::Located, 0), "{}", document.headline);
+    assert_eq!((document.verdict, document.effects.len()), (TraceVerdict::Located, 0), "{}", document.headline);
     let located = &document.located[0];
     assert_eq!(
         (located.depends_on, located.formula.as_deref()),
@@ -286,13 +288,13 @@ fn a_random_moment_is_a_disturbance_and_in_a_calm_unexplained() {
     let walking = wandering(30.0, 2);
     let document = traced(std::slice::from_ref(&walking)).document;
     let disturbance = document.disturbance.expect("a random moment");
-    assert_eq!((document.verdict, document.effects.len()), (Verdict::Disturbed, 0), "{}", document.headline);
+    assert_eq!((document.verdict, document.effects.len()), (TraceVerdict::Disturbed, 0), "{}", document.headline);
     assert!(disturbance.heading_error_share > 0.6, "{disturbance:?}");
     assert!(document.headline.contains("the ship was disturbed"), "{}", document.headline);
     let weather = Some(DeclaredWeather::Calm);
     let becalmed = walking.with_conditions(DeclaredConditions { weather, ..DeclaredConditions::default() });
     let document = traced(&[becalmed]).document;
-    assert_eq!(document.verdict, Verdict::Unexplained, "{}", document.headline);
+    assert_eq!(document.verdict, TraceVerdict::Unexplained, "{}", document.headline);
     let wind = document.candidates.iter().find(|candidate| candidate.id == "wind_moment").expect("on the list");
     assert!(wind.reason.as_deref().is_some_and(|why| why.contains("calm")), "{wind:?}");
 }

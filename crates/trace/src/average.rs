@@ -28,11 +28,11 @@ pub struct FittedAverage<'a> {
     /// Hulls; each has the same weight as all structures together.
     pub hulls: &'a [HullEstimate],
     /// Noise law of the records.
-    pub law: &'a NoiseLaw,
+    pub noise_law: &'a NoiseLaw,
     /// Index of the replayed record among the fitted records; `None` for a record that was not fitted.
     pub fitted_record: Option<usize>,
     /// Ship time L/U, s.
-    pub time: f64,
+    pub ship_length_time: f64,
 }
 
 /// Replay of a model average on one record.
@@ -41,7 +41,7 @@ pub struct AverageReplay {
     /// Full replay averaged over the members.
     pub replay: Replay,
     /// Full replay of every member.
-    pub members: Vec<Replay>,
+    pub member_replays: Vec<Replay>,
     /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
 }
@@ -49,7 +49,7 @@ pub struct AverageReplay {
 impl AverageReplay {
     /// `true` if the replay of a member diverges.
     pub fn is_divergent(&self) -> bool {
-        is_divergent(&self.members.iter().map(Replay::rms).collect::<Vec<f64>>())
+        is_divergent(&self.member_replays.iter().map(Replay::rms).collect::<Vec<f64>>())
     }
 }
 
@@ -106,9 +106,13 @@ impl ModelAverage {
             root_mean_square(&residual.filter(|residual| residual.is_finite()).collect::<Vec<f64>>())
         };
         let durations = depth.window_durations(&record.time).into_iter();
-        let windows = durations.map(|duration| WindowError { duration, heading: within(duration) }).collect();
+        let windows = durations.map(|duration| WindowError { duration, heading_rmse: within(duration) }).collect();
         let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
-        Some(AverageReplay { replay, members: replays.into_iter().map(|(.., replay)| replay).collect(), windows })
+        Some(AverageReplay {
+            replay,
+            member_replays: replays.into_iter().map(|(.., replay)| replay).collect(),
+            windows,
+        })
     }
 }
 

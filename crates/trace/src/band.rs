@@ -8,7 +8,7 @@
 //! added. Effects that are not among the candidates are not covered.
 
 use estimation::column::dot;
-use estimation::kalman::{MAX_STATES, System};
+use estimation::kalman::{LinearSystem, MAX_STATES};
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -28,28 +28,29 @@ const DRAWS: usize = 100;
 
 /// Half-width of the band at every row of the replay `mean`, rad; `None` without a structure, if the covariance of a
 /// structure is singular, or if a hull has no variance on the record.
-pub fn half_width(after: &FittedAverage, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
-    let record = PreparedRecord::averaged(trial, after.time);
-    let first = after.members.first()?.1;
-    let problem = FittedRecords::new(vec![record], first.theta[0], after.time);
-    let (law_variance, white) = variances(after, &problem);
+pub fn band_half_width(average: &FittedAverage, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
+    let record = PreparedRecord::averaged(trial, average.ship_length_time);
+    let first = average.members.first()?.1;
+    let problem = FittedRecords::new(vec![record], first.theta[0], average.ship_length_time);
+    let (law_variance, white) = variances(average, &problem);
     let record = &problem.records[0];
-    let rows = record.observed.len();
+    let rows = record.observed_rows.len();
     let mut variance = vec![0.0; rows];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
-    let share = after.hull_weight();
-    for ((weight, fit), replay) in after.members.iter().zip(members) {
-        let sampler = ResidualSampler::new(after, &problem, fit, replay.initial_state(), law_variance)?;
+    let share = average.hull_weight();
+    for ((weight, fit), replay) in average.members.iter().zip(members) {
+        let sampler = ResidualSampler::new(average, &problem, fit, replay.initial_state(), law_variance)?;
         for _ in 0..DRAWS {
             let residual = sampler.draw(&mut generator);
             variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += share * weight * e * e / DRAWS as f64);
         }
     }
-    let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+    let time: Vec<f64> = record.observed_rows.iter().map(|&row| record.time[row]).collect();
     let smooth = Polyline::new(time, smoothed(&variance)).ok()?;
-    let of_hulls: Vec<Polyline> = after.hulls.iter().map(|hull| hull.heading_variance(trial)).collect::<Option<_>>()?;
+    let of_hulls: Vec<Polyline> =
+        average.hulls.iter().map(|hull| hull.heading_variance(trial)).collect::<Option<_>>()?;
     let hulls = |t: f64| share * of_hulls.iter().map(|variance| variance.value_at(t)).sum::<f64>();
-    let weights: Vec<f64> = after.weights().collect();
+    let weights: Vec<f64> = average.weights().collect();
     let between = |row: usize| -> f64 {
         let parts = weights.iter().zip(members);
         parts.map(|(weight, member)| weight * (member.heading[row] - mean.heading[row]).powi(2)).sum()
@@ -61,9 +62,9 @@ pub fn half_width(after: &FittedAverage, trial: &Trial, mean: &Replay, members: 
 
 /// Variance of the white noise of a full row and of one reading, rad²: of the record if it was fitted, otherwise the
 /// mean over the records.
-fn variances(after: &FittedAverage, problem: &FittedRecords) -> (f64, f64) {
-    let all = &after.law.variance;
-    let row = after.fitted_record.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
+fn variances(average: &FittedAverage, problem: &FittedRecords) -> (f64, f64) {
+    let all = &average.noise_law.row_variance;
+    let row = average.fitted_record.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (row, row * problem.records[0].full_readings as f64)
 }
 
@@ -79,7 +80,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 
 /// Sampler of the residual of one structure on one record.
 struct ResidualSampler {
-    system: System<MAX_STATES>,
+    system: LinearSystem<MAX_STATES>,
     /// Standard deviation of the white noise of a full row, rad.
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
@@ -103,13 +104,13 @@ enum ParameterErrors {
 
 impl ResidualSampler {
     fn new(
-        after: &FittedAverage,
+        average: &FittedAverage,
         problem: &FittedRecords,
         fit: &StructureFit,
         initial: [f64; 2],
         variance: f64,
     ) -> Option<Self> {
-        let (structure, theta) = fit.structure.for_record(after.fitted_record, &fit.theta);
+        let (structure, theta) = fit.structure.for_record(average.fitted_record, &fit.theta);
         let linear = problem.linearise(&structure, &theta, &[initial]);
         let rows = linear.blocks[0].residual.len();
         let count = linear.unknowns - 2;
@@ -120,14 +121,16 @@ impl ResidualSampler {
         let columns: Vec<Vec<f64>> = (0..count).map(column).collect();
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
-        let covariance = fit.record_covariance(after.fitted_record)?;
+        let covariance = fit.record_covariance(average.fitted_record)?;
         let law = crate::noise_law::NoiseLaw {
-            colour: after.law.colour,
-            variance: vec![variance],
-            power: vec![after.fitted_record.map_or(1.0, |number| after.law.power[number])],
+            colour: average.noise_law.colour,
+            row_variance: vec![variance],
+            likelihood_power: vec![
+                average.fitted_record.map_or(1.0, |number| average.noise_law.likelihood_power[number]),
+            ],
         };
         let record = &problem.records[0];
-        let errors = match after.fitted_record {
+        let errors = match average.fitted_record {
             Some(_) => {
                 // The noise of the record entered the fit: the errors of the parameters are −H⁻¹ Jᵀ Σ⁻¹ w.
                 let whitening = problem.whitening(&law);
@@ -144,7 +147,11 @@ impl ResidualSampler {
         Some(Self {
             system: problem.noise[0].system(&law.colour).0,
             deviation: variance.sqrt(),
-            white: record.observed.iter().map(|&row| (variance * full / record.readings[row] as f64).sqrt()).collect(),
+            white: record
+                .observed_rows
+                .iter()
+                .map(|&row| (variance * full / record.row_readings[row] as f64).sqrt())
+                .collect(),
             columns,
             state,
             inverse,
@@ -153,7 +160,7 @@ impl ResidualSampler {
     }
 
     /// One draw of the residual M (w + J d) at the observed rows, rad, with the correlated noise alone in w. The white
-    /// noise of a fitted record enters d; its direct contribution is added to the band by [`half_width`].
+    /// noise of a fitted record enters d; its direct contribution is added to the band by [`band_half_width`].
     fn draw(&self, generator: &mut ChaCha8Rng) -> Vec<f64> {
         let mut normal = || -> f64 { generator.sample(StandardNormal) };
         let coloured: Vec<f64> = self.system.sample_path(&mut normal).into_iter().map(|x| x * self.deviation).collect();

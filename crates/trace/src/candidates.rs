@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ship::effects::{Backlash, CandidateEffect, Effect, RecordScales, SecondOrder, SteeringLag, WaveHeading};
-use ship::{Polyline, Regressor};
+use ship::{Polyline, RegressorChannel};
 use trial::Trial;
 
 use crate::model::Term;
@@ -23,34 +23,39 @@ pub const PRIOR_PROBABILITY_MOTION_EFFECT: f64 = 0.5;
 pub const PRIOR_PROBABILITY_TIME_MOMENT: f64 = 0.001;
 
 /// Ship time L/U, s: from the particulars, otherwise approximated by (K/T)^(−1/2); `gain` is K/T, 1/s².
-pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
+pub fn ship_length_time(trials: &[Trial], gain: f64) -> f64 {
     let mut times = trials.iter().filter_map(Trial::particulars).map(|ship| ship.ship_length_time());
     times.find(|time| time.is_normal()).unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
-/// Scales of the manoeuvres in some records of a ship with L/U = `time` (s); the span is that of `record`.
-pub fn record_scales(records: &[PreparedRecord], trials: &[Trial], time: f64, record: &PreparedRecord) -> RecordScales {
+/// Scales of the manoeuvres in some records of a ship with L/U = `ship_length_time` (s); the span is that of `record`.
+pub fn record_scales(
+    records: &[PreparedRecord],
+    trials: &[Trial],
+    ship_length_time: f64,
+    record: &PreparedRecord,
+) -> RecordScales {
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|ship| ship.speed));
     let mean_speed = mean_square(records, |record| record.speed.as_ref());
     // Approach speed: declared, otherwise the root mean square of the recorded speed, otherwise that of the sway.
     let speed = |square: f64| approach.unwrap_or(mean_speed.unwrap_or(square).sqrt());
     let propeller = || {
-        let mean = mean_square(records, |record| record.propeller.as_ref())?.sqrt();
-        let values = records.iter().filter_map(|record| record.propeller.as_ref()).flat_map(|rate| rate.values());
+        let mean = mean_square(records, |record| record.propeller_rate.as_ref())?.sqrt();
+        let values = records.iter().filter_map(|record| record.propeller_rate.as_ref()).flat_map(|rate| rate.values());
         let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(low, high), &n| (low.min(n), high.max(n)));
         (highest - lowest > MIN_PROPELLER_CHANGE * mean).then_some(mean)
     };
     let angles = records.iter().flat_map(|record| record.rudder.values());
     RecordScales {
-        ship_length_time: time,
+        ship_length_time,
         max_rudder: angles.fold(1e-3_f64, |largest, delta| largest.max(delta.abs())),
         duration: records.iter().map(PreparedRecord::duration).fold(0.0, f64::max),
         row_interval: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
-        speed: mean_speed.map(speed),
-        approach_speed_for_sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
+        approach_speed: mean_speed.map(speed),
+        approach_speed_for_sway: mean_square(records, |record| record.sway_velocity.as_ref()).map(speed),
         mean_square_wind_speed: mean_square(records, |record| record.wind_speed.as_ref()),
         rms_propeller_rate: propeller(),
-        span: [record.time[0], record.time[record.time.len() - 1]],
+        time_span: [record.time[0], record.time[record.time.len() - 1]],
     }
 }
 
@@ -68,7 +73,12 @@ pub fn has_waves(trials: &[Trial], selection: &Selection) -> bool {
 
 /// Candidate terms of the selected effects for these records. Waves are a noise law and no candidate. A moment that
 /// depends on time alone is a separate candidate for every record.
-pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
+pub fn candidate_terms(
+    records: &[PreparedRecord],
+    trials: &[Trial],
+    ship_length_time: f64,
+    selection: &Selection,
+) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
     for effect in selection.effects().iter().filter(|effect| selection.allows(effect.id())) {
         let places: Vec<Option<usize>> = match effect.is_time_dependent() && records.len() > 1 {
@@ -77,7 +87,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
         };
         let is_open = |record: &Option<usize>| !is_barred_by_calm(effect.as_ref(), *record, trials, selection);
         for record in places.into_iter().filter(is_open) {
-            let about = record_scales(records, trials, time, &records[record.unwrap_or(0)]);
+            let about = record_scales(records, trials, ship_length_time, &records[record.unwrap_or(0)]);
             let Some(CandidateEffect { effect, priors }) = effect.candidate(&about) else { continue };
             candidates.push(Term { effect, record_index: record, priors, log_odds: 0.0 });
         }
@@ -88,7 +98,7 @@ pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &
     let weighted = |term: &Term| {
         let prior = match (term.effect.is_time_dependent(), term.effect.needs()) {
             (true, _) => PRIOR_PROBABILITY_TIME_MOMENT,
-            (false, Some(Regressor::Speed | Regressor::Sway)) => PRIOR_PROBABILITY_MOTION_EFFECT,
+            (false, Some(RegressorChannel::Speed | RegressorChannel::Sway)) => PRIOR_PROBABILITY_MOTION_EFFECT,
             (false, _) => PRIOR_PROBABILITY,
         };
         let probability = prior / forms(term.effect.id(), term.record_index);
@@ -133,7 +143,7 @@ mod tests {
     use super::*;
     use crate::testing::{TrialPlan, record, ship};
     use crate::{EffectId, Settings, trace};
-    use document::trace::Outcome;
+    use document::trace::CandidateOutcome;
 
     fn trials() -> [Trial; 2] {
         let trial = record(&ship(Vec::new()), TrialPlan::default());
@@ -144,7 +154,7 @@ mod tests {
     /// Effects of the weather among the candidates, with the record in which they act.
     fn weather(trials: &[Trial], selection: &Selection) -> Vec<(&'static str, Option<usize>)> {
         let records: Vec<PreparedRecord> = trials.iter().map(PreparedRecord::unaveraged).collect();
-        let all = all(&records, trials, 13.0, selection);
+        let all = candidate_terms(&records, trials, 13.0, selection);
         assert!(all.iter().any(|term| term.effect.id() == "nonlinear_damping"));
         let mut named: Vec<_> =
             all.iter().filter(|term| term.effect.is_environmental()).map(|term| term.name()).collect();
@@ -172,7 +182,7 @@ mod tests {
         let analysis = trace(&[calm], &[], &settings).expect("a base");
         for id in ["wind_moment", "moment_drift", "transient_disturbance", WaveHeading.id()] {
             let entry = analysis.document.candidates.iter().find(|entry| entry.id == id).expect("on the list");
-            assert_eq!((entry.outcome, entry.forms.len()), (Outcome::NotObservable, 0), "{id}");
+            assert_eq!((entry.outcome, entry.forms.len()), (CandidateOutcome::NotObservable, 0), "{id}");
             assert_eq!(entry.reason.as_deref(), Some("the record declares a calm (weather = \"none\")"), "{id}");
         }
     }

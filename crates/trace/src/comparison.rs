@@ -30,19 +30,19 @@ pub struct ReplayResult {
     pub errors: ReplayErrors,
     /// Half-width of the 95 % band of a reading at every row of the replay, rad; `None` for the base, if the
     /// covariance of a structure is singular, or if a hull has no variance on the record.
-    pub band: Option<Vec<f64>>,
+    pub band_half_width: Option<Vec<f64>>,
 }
 
 /// Coverage of the headings of a record by the 95 % band of its replay.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BandCoverage {
+pub struct ConfidenceBandCoverage {
     /// Number of measured headings inside the band.
     pub headings_inside: usize,
     /// Number of measured headings.
-    pub headings: usize,
+    pub heading_count: usize,
     /// 99 % interval of the share inside (Wilson 1927), for the effective number of headings n (1 − ρ)/(1 + ρ) with the
     /// lag-1 autocorrelation ρ of the inside flags, because neighbouring headings are correlated.
-    pub interval: [f64; 2],
+    pub share_ci99: [f64; 2],
 }
 
 /// Nominal coverage of a band.
@@ -51,7 +51,7 @@ const NOMINAL_COVERAGE: f64 = 0.95;
 /// 99.5 % quantile of the standard normal law.
 const QUANTILE_99: f64 = 2.575_829_303_548_901;
 
-impl BandCoverage {
+impl ConfidenceBandCoverage {
     /// Coverage from flags in order of time, `true` for a heading inside; `None` without headings.
     pub fn from_flags(inside: &[bool]) -> Option<Self> {
         let (headings_inside, headings) = (inside.iter().filter(|&&inside| inside).count(), inside.len());
@@ -61,30 +61,41 @@ impl BandCoverage {
         let square: f64 = off.iter().map(|off| off * off).sum();
         let correlation = if square > 0.0 { (cross / square).max(0.0) } else { 0.0 };
         let independent = headings as f64 * (1.0 - correlation) / (1.0 + correlation);
-        Some(Self { headings_inside, headings, interval: wilson_interval(share, independent, QUANTILE_99) })
+        Some(Self {
+            headings_inside,
+            heading_count: headings,
+            share_ci99: wilson_interval(share, independent, QUANTILE_99),
+        })
     }
 
     /// Share of the headings inside the band.
     pub fn share(&self) -> f64 {
-        self.headings_inside as f64 / self.headings as f64
+        self.headings_inside as f64 / self.heading_count as f64
     }
 
     /// `true` if the coverage is not significantly below the nominal 95 %.
     pub fn is_nominal(&self) -> bool {
-        self.interval[1] >= NOMINAL_COVERAGE
+        self.share_ci99[1] >= NOMINAL_COVERAGE
     }
 }
 
 impl ReplayResult {
     /// Coverage of the measured headings; `None` without a band.
-    pub fn coverage(&self) -> Option<BandCoverage> {
-        let pairs = self.replay.residual.iter().zip(self.band.as_ref()?).filter(|(residual, _)| residual.is_finite());
-        BandCoverage::from_flags(&pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>())
+    pub fn band_coverage(&self) -> Option<ConfidenceBandCoverage> {
+        let pairs = self
+            .replay
+            .residual
+            .iter()
+            .zip(self.band_half_width.as_ref()?)
+            .filter(|(residual, _)| residual.is_finite());
+        ConfidenceBandCoverage::from_flags(
+            &pairs.map(|(residual, half)| residual.abs() <= *half).collect::<Vec<bool>>(),
+        )
     }
 
     /// Mean width of the band, rad; `None` without a band.
-    pub fn width(&self) -> Option<f64> {
-        let band = self.band.as_ref().filter(|band| !band.is_empty())?;
+    pub fn band_width(&self) -> Option<f64> {
+        let band = self.band_half_width.as_ref().filter(|band| !band.is_empty())?;
         Some(2.0 * band.iter().sum::<f64>() / band.len() as f64)
     }
 }
@@ -92,16 +103,17 @@ impl ReplayResult {
 impl From<&ReplayResult> for ModelReplayErrors {
     fn from(on: &ReplayResult) -> Self {
         let errors = &on.errors;
-        let horizon = HORIZONS_S.map(|window| (format!("{window:.0}"), errors.restarted_rms(window).map(to_deg)));
+        let horizon =
+            HORIZONS_S.map(|window| (format!("{window:.0}"), errors.restarted_heading_rmse(window).map(to_deg)));
         Self {
-            heading_rmse_deg: to_deg(errors.heading),
-            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
-            overshoot_error_deg: errors.overshoot.map(to_deg),
+            heading_rmse_deg: to_deg(errors.heading_rmse),
+            yaw_rate_rmse_deg_s: errors.yaw_rate_rmse.map(to_deg),
+            overshoot_error_deg: errors.overshoot_error.map(to_deg),
             horizon_rmse_deg: horizon.into(),
-            band_coverage_95: on.coverage().map(|coverage| coverage.share()),
-            band_width_95_deg: on.width().map(to_deg),
-            with_own_bias_deg: errors.fitted_moment_errors.map(|with| to_deg(with.bias)),
-            with_own_moment_deg: errors.fitted_moment_errors.map(|with| to_deg(with.slow)),
+            band_coverage_95: on.band_coverage().map(|coverage| coverage.share()),
+            band_width_95_deg: on.band_width().map(to_deg),
+            heading_rmse_own_bias_deg: errors.fitted_moment_errors.map(|with| to_deg(with.with_bias)),
+            heading_rmse_own_moment_deg: errors.fitted_moment_errors.map(|with| to_deg(with.with_slow_moment)),
         }
     }
 }
@@ -110,20 +122,21 @@ impl From<&ReplayResult> for ModelReplayErrors {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordComparison {
     /// Replay of the base.
-    pub before: ReplayResult,
+    pub base_replay: ReplayResult,
     /// Replay of the structure average.
-    pub after: ReplayResult,
+    pub average_replay: ReplayResult,
 }
 
 impl RecordComparison {
     /// Heading errors by prediction horizon: windows of at most two thirds of the record, then the whole record.
     pub fn horizons(&self) -> Vec<HorizonEntry> {
-        let [before, after] = [&self.before.errors, &self.after.errors];
-        let time = &self.before.replay.time;
+        let [before, after] = [&self.base_replay.errors, &self.average_replay.errors];
+        let time = &self.base_replay.replay.time;
         let shorter = before.windows.iter().filter(|window| has_several_windows(window.duration, time));
-        let windows = shorter
-            .filter_map(|window| Some((window.duration, window.heading?, after.restarted_rms(window.duration)?)));
-        let all = windows.chain([(duration(time), before.heading, after.heading)]);
+        let windows = shorter.filter_map(|window| {
+            Some((window.duration, window.heading_rmse?, after.restarted_heading_rmse(window.duration)?))
+        });
+        let all = windows.chain([(duration(time), before.heading_rmse, after.heading_rmse)]);
         let entry = |(horizon_s, before, after)| HorizonEntry {
             horizon_s,
             before_deg: to_deg(before),
@@ -176,7 +189,7 @@ impl FittedAverage<'_> {
             before.errors.fitted_moment_errors = Some(moment.base_errors(&before.replay));
             after.errors.fitted_moment_errors = Some(moment.average_errors(&self.average(), &after.replay));
         }
-        Ok(RecordComparison { before, after })
+        Ok(RecordComparison { base_replay: before, average_replay: after })
     }
 
     /// Comparisons on several held-out records.
@@ -203,10 +216,10 @@ impl FittedAverage<'_> {
         if let Some(number) = self.fitted_record {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
-        let AverageReplay { replay, windows, members } =
+        let AverageReplay { replay, windows, member_replays: members } =
             self.average().replay(record, &all, depth).ok_or_else(refuse)?;
-        let band = band::half_width(self, trial, &replay, &members);
-        Ok(ReplayResult { band, ..result(trial, replay, windows, depth) })
+        let band = band::band_half_width(self, trial, &replay, &members);
+        Ok(ReplayResult { band_half_width: band, ..result(trial, replay, windows, depth) })
     }
 }
 
@@ -222,14 +235,14 @@ fn result(trial: &Trial, replay: Replay, windows: Vec<WindowError>, depth: Repla
         root_mean_square(&finite(&differences))
     });
     let errors = ReplayErrors {
-        heading: replay.rms(),
-        rows,
-        yaw_rate,
-        overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
+        heading_rmse: replay.rms(),
+        heading_count: rows,
+        yaw_rate_rmse: yaw_rate,
+        overshoot_error: if thorough { overshoot_error(trial, &replay) } else { None },
         windows,
         fitted_moment_errors: None,
     };
-    ReplayResult { replay, errors, band: None }
+    ReplayResult { replay, errors, band_half_width: None }
 }
 
 #[cfg(test)]
@@ -241,12 +254,12 @@ mod tests {
     fn neighbours_outside_a_band_count_little() {
         let outside = |is_out: fn(usize) -> bool| {
             let inside: Vec<bool> = (0..200).map(|row| !is_out(row)).collect();
-            BandCoverage::from_flags(&inside).expect("headings")
+            ConfidenceBandCoverage::from_flags(&inside).expect("headings")
         };
         let (scattered, swing) = (outside(|row| row % 10 == 0), outside(|row| row >= 180));
         assert_eq!((scattered.headings_inside, swing.headings_inside), (180, 180));
         assert!(!scattered.is_nominal() && swing.is_nominal(), "{scattered:?} {swing:?}");
         assert!(outside(|_| false).is_nominal() && !outside(|_| true).is_nominal());
-        assert_eq!(BandCoverage::from_flags(&[]), None);
+        assert_eq!(ConfidenceBandCoverage::from_flags(&[]), None);
     }
 }

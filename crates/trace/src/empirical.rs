@@ -2,10 +2,10 @@
 //! addition to the named effects.
 
 use ship::effects::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, Parameter, RecordScales,
 };
 use ship::particulars::Dimension;
-use ship::{EffectReal, Regressor};
+use ship::{EffectReal, RegressorChannel};
 
 use std::sync::{Arc, LazyLock};
 
@@ -84,29 +84,33 @@ static LIBRARY: LazyLock<Vec<MonomialPowers>> =
     LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(MonomialPowers::from_notation).collect());
 
 /// All monomials; those with magnitudes are last.
-pub fn all() -> &'static [MonomialPowers] {
+pub fn all_monomials() -> &'static [MonomialPowers] {
     &LIBRARY
 }
 
 /// Monomials without magnitudes.
-pub fn without_magnitudes() -> &'static [MonomialPowers] {
+pub fn monomials_without_magnitudes() -> &'static [MonomialPowers] {
     &LIBRARY[..PLAIN.split(' ').count()]
 }
 
 /// Log prior odds of an empirical term.
 const LOG_ODDS: f64 = -4.0;
 
-/// Candidate terms of the monomials whose channels the records have; `time` is L/U, s.
-pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
-    let about = record_scales(records, trials, time, &records[0]);
+/// Candidate terms of the monomials whose channels the records have; `ship_length_time` is L/U, s.
+pub fn monomial_terms(
+    records: &[PreparedRecord],
+    trials: &[Trial],
+    ship_length_time: f64,
+) -> impl Iterator<Item = Arc<Term>> {
+    let about = record_scales(records, trials, ship_length_time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
         let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
         (square / count.max(1) as f64).sqrt().max(1e-9)
     };
-    let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
+    let heading = rms(&mut records.iter().flat_map(|r| r.observed_rows.iter().map(|&row| r.heading[row])));
     let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
-    let scales = [0.2 / time, about.max_rudder, heading, speed.unwrap_or(1.0)];
-    all().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
+    let scales = [0.2 / ship_length_time, about.max_rudder, heading, speed.unwrap_or(1.0)];
+    all_monomials().iter().filter(move |powers| speed.is_some() || powers.exponents[3] == 0).filter_map(move |powers| {
         let CandidateEffect { effect, priors } = Monomial { powers, scales }.candidate(&about)?;
         Some(Arc::new(Term { effect, record_index: None, priors, log_odds: LOG_ODDS }))
     })
@@ -121,8 +125,8 @@ pub const COEFFICIENT: Parameter = Parameter::even(["c", "c", "rad"], [0.0, 0.02
 const PARAMETERS: [Parameter; 1] = [COEFFICIENT];
 
 impl Effect for Monomial {
-    fn description(&self) -> Description {
-        Description {
+    fn description(&self) -> EffectDescription {
+        EffectDescription {
             id: "empirical",
             form: self.powers.form,
             equation: &self.powers.equation,
@@ -146,8 +150,8 @@ impl Effect for Monomial {
         EffectTarget::MOMENT
     }
 
-    fn needs(&self) -> Option<Regressor> {
-        (self.powers.exponents[3] > 0).then_some(Regressor::Speed)
+    fn needs(&self) -> Option<RegressorChannel> {
+        (self.powers.exponents[3] > 0).then_some(RegressorChannel::Speed)
     }
 }
 
@@ -187,7 +191,7 @@ mod tests {
             MonomialPowers::from_notation("δ|δ||ψ|").formula_text(),
             "proposal = c * delta * abs(delta) * abs(psi)"
         );
-        assert!(all().iter().all(|powers| ship::effects::Formula::parse(&powers.formula_text()).is_ok()));
-        assert_eq!((without_magnitudes().len(), all().len()), (18, 59));
+        assert!(all_monomials().iter().all(|powers| ship::effects::Formula::parse(&powers.formula_text()).is_ok()));
+        assert_eq!((monomials_without_magnitudes().len(), all_monomials().len()), (18, 59));
     }
 }

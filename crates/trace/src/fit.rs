@@ -10,7 +10,7 @@
 use estimation::levenberg_marquardt::{NormalEquations, Objective, SearchResult, SearchSettings, minimise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use ship::effects::Prior;
+use ship::effects::ParameterPrior;
 use statrs::distribution::{self, ContinuousCDF};
 
 use crate::linear::{Linearisation, heading_sensitivities};
@@ -37,14 +37,14 @@ impl StoppingRule {
     fn rules(self) -> SearchSettings {
         SearchSettings {
             max_steps: self.max_steps,
-            damping: 1e-3,
-            shrink: 0.1,
+            initial_damping: 1e-3,
+            damping_shrink: 0.1,
             trust_ratio: 0.5,
-            grow: 8.0,
+            damping_growth: 8.0,
             min_damping: [0.0, 1e-6],
             max_rejections: 8,
             min_decrease: self.min_decrease,
-            tolerance: [self.min_decrease, 0.0],
+            decrease_tolerance: [self.min_decrease, 0.0],
             max_small_steps: 1,
         }
     }
@@ -58,13 +58,13 @@ pub struct FittedRecords {
     /// Noise transitions of the records, independent of the level of the noise.
     pub noise: Vec<RecordNoise>,
     /// Ship time L/U, s.
-    pub time: f64,
+    pub ship_length_time: f64,
 }
 
 impl FittedRecords {
-    /// Prepares records of a ship with this 1/T (1/s) of the base and L/U = `time` (s).
-    pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
-        let mut all = Self { records, noise: Vec::new(), time };
+    /// Prepares records of a ship with this 1/T (1/s) of the base and L/U = `ship_length_time` (s).
+    pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, ship_length_time: f64) -> Self {
+        let mut all = Self { records, noise: Vec::new(), ship_length_time };
         all.noise = all.noise_transitions(inverse_time);
         all
     }
@@ -77,8 +77,8 @@ impl FittedRecords {
     }
 
     /// Number of observed headings.
-    pub fn observations(&self) -> usize {
-        self.records.iter().map(|record| record.observed.len()).sum()
+    pub fn heading_count(&self) -> usize {
+        self.records.iter().map(|record| record.observed_rows.len()).sum()
     }
 
     /// Duration of the longest record, s.
@@ -91,8 +91,8 @@ impl FittedRecords {
     pub fn log_normaliser(&self, law: &NoiseLaw) -> f64 {
         let whiteners = self.whitening(law).whiteners;
         let normaliser = |(number, record): (usize, &PreparedRecord)| {
-            let rows = record.observed.len() as f64;
-            law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_determinant)
+            let rows = record.observed_rows.len() as f64;
+            law.likelihood_power[number] * (rows * law.row_variance[number].ln() + whiteners[number].log_determinant)
         };
         -0.5 * self.records.iter().enumerate().map(normaliser).sum::<f64>()
     }
@@ -100,7 +100,8 @@ impl FittedRecords {
     /// Whitening filters of all records under a law, with the scales √(p/σ²).
     pub fn whitening(&self, law: &NoiseLaw) -> RecordWhitening {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();
-        let scale = law.variance.iter().zip(&law.power).map(|(variance, power)| (power / variance).sqrt());
+        let scale =
+            law.row_variance.iter().zip(&law.likelihood_power).map(|(variance, power)| (power / variance).sqrt());
         RecordWhitening { whiteners, scale: scale.collect() }
     }
 
@@ -108,9 +109,9 @@ impl FittedRecords {
     pub fn residual(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
         let residual = |(number, record): (usize, &PreparedRecord)| {
             let response = structure.response(Some(number), theta);
-            let mut out = vec![0.0; record.observed.len()];
+            let mut out = vec![0.0; record.observed_rows.len()];
             replay_headings(&response, record, initial[number], |row, heading| {
-                out[row] = record.heading[record.observed[row]] - heading;
+                out[row] = record.heading[record.observed_rows[row]] - heading;
             });
             out
         };
@@ -154,13 +155,13 @@ impl FittedRecords {
         let mut search = PosteriorSearch { problem: self, structure, whitening, priors, last, kept };
         let start = search.unknowns(&theta, &initial);
         search.last = search.point(theta, initial);
-        let SearchResult { normal, .. } = minimise(&mut search, start, &effort.rules());
+        let SearchResult { normal_equations: normal, .. } = minimise(&mut search, start, &effort.rules());
         let kept = search.kept;
         StructureFit {
-            evidence: evidence(structure, &kept, &normal),
+            log_evidence: evidence(structure, &kept, &normal),
             structure: structure.clone(),
             misfit: kept.misfit,
-            penalty: kept.value - kept.misfit,
+            prior_penalty: kept.value - kept.misfit,
             residual: kept.residual,
             theta: kept.theta,
             initial: kept.initial,
@@ -196,7 +197,7 @@ struct PosteriorSearch<'a> {
     problem: &'a FittedRecords,
     structure: &'a Structure,
     whitening: &'a RecordWhitening,
-    priors: Vec<Prior>,
+    priors: Vec<ParameterPrior>,
     /// Point evaluated last.
     last: FitPoint,
     /// Point accepted last.
@@ -262,18 +263,18 @@ pub fn normal_equations(
 }
 
 /// Distance of a value from the prior mean, in prior standard deviations; 0 for a uniform prior or a fixed value.
-pub fn prior_deviation(prior: Prior, value: f64) -> f64 {
+pub fn prior_deviation(prior: ParameterPrior, value: f64) -> f64 {
     if prior.sd > 0.0 && prior.sd.is_finite() { (value - prior.mean) / prior.sd } else { 0.0 }
 }
 
 /// Precision of a prior; 12/(range)² for a uniform prior.
-pub fn prior_precision(prior: Prior) -> f64 {
+pub fn prior_precision(prior: ParameterPrior) -> f64 {
     if prior.sd.is_finite() { prior.sd.powi(-2) } else { 12.0 / (prior.highest - prior.lowest).powi(2) }
 }
 
 /// Log normaliser of a prior truncated to its bounds: the logarithm of the factor before exp(−½ ((x − μ)/s)²). 0 for a
 /// fixed value.
-pub fn log_prior_normaliser(prior: Prior) -> f64 {
+pub fn log_prior_normaliser(prior: ParameterPrior) -> f64 {
     if !prior.is_fitted() {
         return 0.0;
     }
@@ -296,7 +297,7 @@ fn evidence(structure: &Structure, at: &FitPoint, normal: &NormalEquations) -> f
     let volume = 0.5 * of_terms as f64 * std::f64::consts::TAU.ln() - 0.5 * factor.ln_determinant();
     let covariance = factor.inverse();
     let law = distribution::Normal::standard();
-    let inside = |(k, &(prior, value)): (usize, &(Prior, f64))| {
+    let inside = |(k, &(prior, value)): (usize, &(ParameterPrior, f64))| {
         let sd = covariance[(k, k)].sqrt();
         let held = normal.is_bound_active(k, value, [prior.lowest, prior.highest]);
         let push = if held { normal.right_hand_side[k] * sd } else { 0.0 };
@@ -325,11 +326,11 @@ pub struct StructureFit {
     /// Misfit Σ p |W e|²/σ².
     pub misfit: f64,
     /// Prior penalty Σ ((θ − μ)/s)².
-    pub penalty: f64,
+    pub prior_penalty: f64,
     /// Posterior precision of the unknowns: second derivatives of J/2.
     pub precision: DMatrix<f64>,
     /// Log marginal likelihood, up to a constant shared by all structures on these records.
-    pub evidence: f64,
+    pub log_evidence: f64,
 }
 
 impl StructureFit {

@@ -12,7 +12,7 @@ use crate::settings::Settings;
 /// Hulls supported by the records, with earlier trials as priors: their residual is at most three times the smallest of
 /// all hulls and of the structure average. Empty if hulls are not requested, and without length and speed of the ship;
 /// without earlier trials also if the structures leave only noise.
-pub fn fit(
+pub fn fit_supported_hulls(
     trials: &[Trial],
     settings: &Settings,
     comparisons: &[RecordComparison],
@@ -21,14 +21,14 @@ pub fn fit(
     if !settings.fits_hulls || residual_analysis.is_noise && settings.earlier_hulls.is_empty() {
         return Vec::new();
     }
-    let rows: usize = comparisons.iter().map(|comparison| comparison.after.errors.rows).sum();
+    let rows: usize = comparisons.iter().map(|comparison| comparison.average_replay.errors.heading_count).sum();
     hull::supported_hulls(
-        hull::fit_all(trials, &settings.earlier_hulls),
+        hull::fit_all_forms(trials, &settings.earlier_hulls),
         (heading_error_squares(comparisons)[1] / rows as f64).sqrt(),
     )
 }
 
 /// Hulls refitted to other records under the same priors.
-pub fn refit(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
+pub fn refit_hulls(hulls: &[HullEstimate], trials: &[Trial]) -> Vec<HullEstimate> {
     hulls.par_iter().filter_map(|hull| hull::fit(trials, &hull.prior).ok()).collect()
 }

@@ -16,7 +16,7 @@ use crate::noise_law::NoiseLaw;
 #[derive(Debug, Clone)]
 pub struct InclusionPath {
     /// Times of the observed rows of the first record, s.
-    pub time: Vec<f64>,
+    pub row_times: Vec<f64>,
     /// Steps, the base first.
     pub steps: Vec<InclusionStep>,
 }
@@ -27,14 +27,14 @@ pub struct InclusionStep {
     /// Term added to the step before; `None` for the base.
     pub term: Option<TermName>,
     /// Root mean square heading error over the rows of all fitted records, rad.
-    pub rmse: f64,
+    pub heading_rmse: f64,
     /// Heading residual (measured minus replayed) of the first record, rad.
-    pub residual: Vec<f64>,
+    pub heading_residual: Vec<f64>,
 }
 
 impl InclusionStep {
     fn new(term: Option<TermName>, fit: &StructureFit) -> Self {
-        Self { term, rmse: root_mean_square(fit), residual: fit.residual[0].clone() }
+        Self { term, heading_rmse: root_mean_square(fit), heading_residual: fit.residual[0].clone() }
     }
 }
 
@@ -47,8 +47,8 @@ impl Analysis {
     /// Steps to the most probable structure; `None` if it has no terms, or if an error is not finite.
     pub fn inclusion_path(&self) -> Option<InclusionPath> {
         let problem = &self.problem;
-        let best = &self.structures.all.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
-        let law = NoiseLaw { colour: NoiseColour::WHITE, ..self.full.law.clone() };
+        let best = &self.structures.weighed.first().filter(|best| !best.fit.structure.terms.is_empty())?.fit;
+        let law = NoiseLaw { colour: NoiseColour::WHITE, ..self.full_model.noise_law.clone() };
         let whitening = problem.whitening(&law);
         let mut fit =
             problem.fit(&best.structure, best.theta.clone(), best.initial.clone(), &whitening, StoppingRule::FINE);
@@ -67,7 +67,7 @@ impl Analysis {
         steps.push(InclusionStep::new(None, &fit));
         steps.reverse();
         let record = &problem.records[0];
-        let time = record.observed.iter().map(|&row| record.time[row]).collect();
-        steps.iter().all(|step| step.rmse.is_finite()).then_some(InclusionPath { time, steps })
+        let time = record.observed_rows.iter().map(|&row| record.time[row]).collect();
+        steps.iter().all(|step| step.heading_rmse.is_finite()).then_some(InclusionPath { row_times: time, steps })
     }
 }

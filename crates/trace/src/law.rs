@@ -54,7 +54,7 @@ pub fn min_noise_variances(problem: &FittedRecords, gain: f64) -> Vec<f64> {
         bends.sort_by(|a, b| b.total_cmp(a));
         let count = ((bends.len() as f64 * BEND_SHARE) as usize).max(1);
         let square = bends.iter().take(count).sum::<f64>() / count as f64;
-        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(MIN_HEADING_SD_RAD).powi(2)
+        (gain * problem.ship_length_time * record.rudder_spacing * square.sqrt() / 16.0).max(MIN_HEADING_SD_RAD).powi(2)
     };
     problem.records.iter().map(floor).collect()
 }
@@ -86,11 +86,11 @@ impl<'a> LinearisedFit<'a> {
 
     /// Law with the least criterion among the given kinds, with the waves and the start variances of the law `start`.
     pub fn select_noise_law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> EstimatedNoiseLaw {
-        let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.variance);
-        let log_n = (self.problem.observations() as f64).ln();
-        let coloured = self.levels(kinds, &white.law);
+        let white = self.evaluate(NoiseColour { correlated: None, ..start.colour }, &start.row_variance);
+        let log_n = (self.problem.heading_count() as f64).ln();
+        let coloured = self.levels(kinds, &white.noise_law);
         let sum = |c: EstimatedNoiseLaw| EstimatedNoiseLaw {
-            criterion: c.criterion + c.law.colour.parameter_count() as f64 * log_n,
+            criterion: c.criterion + c.noise_law.colour.parameter_count() as f64 * log_n,
             ..c
         };
         let all = [white].into_iter().chain(coloured).map(sum);
@@ -120,17 +120,17 @@ impl<'a> LinearisedFit<'a> {
     fn evaluate(&self, colour: NoiseColour, start: &[f64]) -> EstimatedNoiseLaw {
         let unit = NoiseLaw { colour, ..NoiseLaw::white(start.len(), 1.0) };
         let whitening = self.problem.whitening(&unit);
-        let mut law = NoiseLaw { variance: start.to_vec(), ..unit };
+        let mut law = NoiseLaw { row_variance: start.to_vec(), ..unit };
         // Normal equations of every record under unit variance: for other variances they are multiples.
         let blocks: Vec<(NormalEquations, Vec<f64>)> =
             (0..start.len()).map(|k| self.record_normal(k, &whitening)).collect();
         let mut criterion = f64::INFINITY;
         for _ in 0..ROUNDS {
             let Some((next, value)) = self.update(&law, &blocks, &whitening) else { break };
-            law.variance = next;
+            law.row_variance = next;
             criterion = value;
         }
-        EstimatedNoiseLaw { law, criterion, waves_gain: 0.0 }
+        EstimatedNoiseLaw { noise_law: law, criterion, waves_gain: 0.0 }
     }
 
     /// Normal equations of a single record, and its whitened residual sum of squares as the only entry of a list.
@@ -149,7 +149,7 @@ impl<'a> LinearisedFit<'a> {
         whitening: &RecordWhitening,
     ) -> Option<(Vec<f64>, f64)> {
         let mut normal = NormalEquations::zeros(self.linear.unknowns);
-        for ((block, _), variance) in blocks.iter().zip(&law.variance) {
+        for ((block, _), variance) in blocks.iter().zip(&law.row_variance) {
             normal.matrix += &block.matrix / *variance;
             normal.right_hand_side += &block.right_hand_side / *variance;
         }
@@ -161,7 +161,7 @@ impl<'a> LinearisedFit<'a> {
         let inverse = factor.inverse();
         let mut criterion = factor.ln_determinant() + penalty - step.dot(&right_hand_side);
         let mut variances = Vec::with_capacity(blocks.len());
-        for (record, ((block, squares), variance)) in blocks.iter().zip(&law.variance).enumerate() {
+        for (record, ((block, squares), variance)) in blocks.iter().zip(&law.row_variance).enumerate() {
             let square = squares[0];
             let rows = self.linear.blocks[record].residual.len() as f64;
             criterion += rows * variance.ln() + whitening.whiteners[record].log_determinant + square / variance;
@@ -177,7 +177,7 @@ impl<'a> LinearisedFit<'a> {
     fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<EstimatedNoiseLaw> {
         let at = |kind: CorrelatedNoise, log: f64| {
             let colour = NoiseColour { correlated: Some((kind, log.exp())), ..white.colour };
-            self.evaluate(colour, &white.variance)
+            self.evaluate(colour, &white.row_variance)
         };
         let [low, high] = LEVELS.map(f64::ln);
         let screen = |&kind: &CorrelatedNoise| {
@@ -197,7 +197,7 @@ impl<'a> LinearisedFit<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EstimatedNoiseLaw {
     /// Noise law.
-    pub law: NoiseLaw,
+    pub noise_law: NoiseLaw,
     /// Criterion −2 log p; for the chosen law it includes the penalty of the colour.
     pub criterion: f64,
     /// Decrease of the criterion by waves, penalty included; 0 without waves.
@@ -205,7 +205,7 @@ pub struct EstimatedNoiseLaw {
 }
 
 /// Noise law of the residual of a fit, estimated among the given kinds of colour; `variance` (rad²) is the start.
-pub fn estimate(
+pub fn estimate_noise_law(
     problem: &FittedRecords,
     fit: &StructureFit,
     variance: &[f64],
@@ -213,23 +213,28 @@ pub fn estimate(
     kinds: &[CorrelatedNoise],
 ) -> EstimatedNoiseLaw {
     let linearised = LinearisedFit::new(problem, fit);
-    let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
+    let start = NoiseLaw { row_variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
     let mut best = linearised.select_noise_law(&start, kinds);
-    if with_waves && let Some(sea) = waves::estimate_waves(problem, &fit.residual, &best.law) {
-        let log_n = (problem.observations() as f64).ln();
+    if with_waves && let Some(sea) = waves::estimate_waves(problem, &fit.residual, &best.noise_law) {
+        let log_n = (problem.heading_count() as f64).ln();
         let colours = [
             Some(NoiseColour { waves: Some(sea), correlated: None }),
-            best.law.colour.correlated.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
+            best.noise_law.colour.correlated.map(|_| NoiseColour { waves: Some(sea), ..best.noise_law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let EstimatedNoiseLaw { law, criterion, .. } = linearised.evaluate(colour, &best.law.variance);
+            let EstimatedNoiseLaw { noise_law: law, criterion, .. } =
+                linearised.evaluate(colour, &best.noise_law.row_variance);
             let criterion = criterion + colour.parameter_count() as f64 * log_n;
             if criterion < best.criterion {
-                best = EstimatedNoiseLaw { law, criterion, waves_gain: best.waves_gain + best.criterion - criterion };
+                best = EstimatedNoiseLaw {
+                    noise_law: law,
+                    criterion,
+                    waves_gain: best.waves_gain + best.criterion - criterion,
+                };
             }
         }
     }
-    EstimatedNoiseLaw { law: best.law.with_model_error_bound(problem), ..best }
+    EstimatedNoiseLaw { noise_law: best.noise_law.with_model_error_bound(problem), ..best }
 }
 
 /// Minimum smooth model error, relative to the standard deviation of the heading: no response describes a hull better.
@@ -243,13 +248,15 @@ impl NoiseLaw {
     /// readings. Other laws are unchanged.
     fn with_model_error_bound(mut self, problem: &FittedRecords) -> Self {
         let Some((CorrelatedNoise::SmoothError(_), level)) = self.colour.correlated else { return self };
-        for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
-            let rows = record.observed.len() as f64;
-            let heading = || record.observed.iter().map(|&row| record.heading[row]);
+        for ((variance, power), record) in
+            self.row_variance.iter_mut().zip(&mut self.likelihood_power).zip(&problem.records)
+        {
+            let rows = record.observed_rows.len() as f64;
+            let heading = || record.observed_rows.iter().map(|&row| record.heading[row]);
             let mean = heading().sum::<f64>() / rows;
             let square = heading().map(|psi| (psi - mean).powi(2)).sum::<f64>() / rows;
             *variance = variance.max(MIN_MODEL_ERROR * MIN_MODEL_ERROR * square / level);
-            *power = (READINGS_PER_TIME * record.duration() / problem.time / rows).min(1.0);
+            *power = (READINGS_PER_TIME * record.duration() / problem.ship_length_time / rows).min(1.0);
         }
         self
     }

@@ -33,20 +33,23 @@ pub fn leave_one_out(
     observer.begin_folds(trials.len());
     let fold = |omitted: usize| -> Option<RecordComparison> {
         let base = FittedBase::fit(&without(trials, omitted)).ok()?;
-        let kept =
-            FittedRecords::new(without(&problem.records, omitted), base.estimate.response.inverse_T, problem.time);
+        let kept = FittedRecords::new(
+            without(&problem.records, omitted),
+            base.estimate.response.inverse_T,
+            problem.ship_length_time,
+        );
         let law = NoiseLaw {
-            variance: without(&full.law.variance, omitted),
-            power: without(&full.law.power, omitted),
-            ..full.law.clone()
+            row_variance: without(&full.noise_law.row_variance, omitted),
+            likelihood_power: without(&full.noise_law.likelihood_power, omitted),
+            ..full.noise_law.clone()
         };
         let whitening = kept.whitening(&law);
-        let refitted = structures.all.iter().take(MAX_STRUCTURES).map(|member| {
+        let refitted = structures.weighed.iter().take(MAX_STRUCTURES).map(|member| {
             let (structure, theta) = without_record(&member.fit, omitted);
             kept.fit(&structure, theta, without(&member.fit.initial, omitted), &whitening, StoppingRule::FINE)
         });
         let fits: Vec<(f64, StructureFit)> =
-            refitted.zip(&structures.all).map(|(fit, member)| (log_posterior(&fit, member), fit)).collect();
+            refitted.zip(&structures.weighed).map(|(fit, member)| (log_posterior(&fit, member), fit)).collect();
         let highest = fits.iter().map(|(log_posterior, _)| *log_posterior).fold(f64::NEG_INFINITY, f64::max);
         let total: f64 = fits.iter().map(|(log_posterior, _)| (log_posterior - highest).exp()).sum();
         let members: Vec<(f64, &StructureFit)> = fits
@@ -54,8 +57,14 @@ pub fn leave_one_out(
             .map(|(log_posterior, fit)| ((log_posterior - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let (hulls, time) = (hulls::refit(hulls, &without(trials, omitted)), problem.time);
-        let averaged = FittedAverage { members: &members, hulls: &hulls, law: &law, fitted_record: None, time };
+        let (hulls, time) = (hulls::refit_hulls(hulls, &without(trials, omitted)), problem.ship_length_time);
+        let averaged = FittedAverage {
+            members: &members,
+            hulls: &hulls,
+            noise_law: &law,
+            fitted_record: None,
+            ship_length_time: time,
+        };
         averaged.compare(&trials[omitted], &base.estimate.response, true).ok()
     };
     let watched = |omitted: usize| {
@@ -69,7 +78,7 @@ pub fn leave_one_out(
 
 /// Log evidence of a member fitted to the kept records, plus the log prior odds of its terms.
 fn log_posterior(fit: &StructureFit, member: &WeighedStructure) -> f64 {
-    fit.evidence + (member.log_posterior - member.fit.evidence)
+    fit.log_evidence + (member.log_posterior - member.fit.log_evidence)
 }
 
 fn without<T: Clone>(all: &[T], omitted: usize) -> Vec<T> {

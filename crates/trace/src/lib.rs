@@ -42,7 +42,7 @@ pub mod transient;
 pub mod waves;
 
 pub use analysis::{Analysis, trace, trace_with_observer, without_spikes};
-pub use document::trace::{Document, Verdict};
+pub use document::trace::{AnalysisDocument, TraceVerdict};
 pub use fold_observer::FoldObserver;
 pub use residual_analysis::{Innovations, SIGNIFICANCE_LEVEL};
 pub use selection::{EffectId, Selection};

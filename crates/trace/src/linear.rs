@@ -46,7 +46,7 @@ pub fn heading_sensitivities(
     initial: [f64; 2],
     variables: &[(usize, usize)],
 ) -> HeadingSensitivities {
-    let rows = record.observed.len();
+    let rows = record.observed_rows.len();
     let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
     let pass = |variables: &[(usize, usize)]| {
         let mut point = constant.clone();
@@ -57,7 +57,7 @@ pub fn heading_sensitivities(
         let response = structure.response(Some(number), theta);
         let (mut residual, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
         replay_headings(&response, record, [initial[0], initial[1]], |row, heading| {
-            residual[row] = record.heading[record.observed[row]] - heading.value;
+            residual[row] = record.heading[record.observed_rows[row]] - heading.value;
             columns.iter_mut().zip(heading.derivatives).for_each(|(column, by)| column[row] = by);
         });
         (residual, columns)

@@ -23,9 +23,9 @@ const MIN_DENSITY_RATIO: f64 = 4.0;
 #[derive(Debug, Clone)]
 pub struct Attribution {
     /// Named effects, required effects first.
-    pub named: Vec<EffectNaming>,
+    pub named_effects: Vec<EffectNaming>,
     /// Effects dropped because shapes or a random moment explain the records better in their place.
-    pub displaced: Vec<EffectNaming>,
+    pub displaced_effects: Vec<EffectNaming>,
     /// Shape analysis of the residual of the named effects; `None` if their covariance is singular.
     pub shapes: Option<ShapeAnalysis>,
 }
@@ -33,7 +33,7 @@ pub struct Attribution {
 impl Attribution {
     /// Random moment in addition to named effects and shapes; `None` without one, or if the rudder noise explains it.
     pub fn unexplained_random_moment(&self, errors: &[Option<RudderNoise>]) -> Option<MomentSize> {
-        let moment = self.shapes.as_ref()?.moment?;
+        let moment = self.shapes.as_ref()?.random_moment?;
         let instrument = errors.iter().flatten().map(|error| error.intensity).fold(0.0, f64::max);
         let is_of_rudder = moment.white_density.is_some_and(|density| density < MIN_DENSITY_RATIO * instrument);
         (!is_of_rudder).then_some(moment)
@@ -69,21 +69,27 @@ pub fn attribute(
     let (asked, open): (Vec<EffectNaming>, Vec<EffectNaming>) = probable.into_iter().partition(is_asked);
     let all = named_structures.shapes(&[asked.as_slice(), &open].concat());
     if open.is_empty() {
-        return Attribution { named: asked, displaced: open, shapes: all };
+        return Attribution { named_effects: asked, displaced_effects: open, shapes: all };
     }
     // Several effects together can imitate one shape, so the shapes without these effects are compared first.
     let none = named_structures.shapes(&asked);
     if is_better(&none, &all) {
-        return named_structures.with_names(Attribution { named: asked, displaced: open, shapes: none });
+        return named_structures.with_names(Attribution {
+            named_effects: asked,
+            displaced_effects: open,
+            shapes: none,
+        });
     }
-    let mut current = Attribution { named: [asked.as_slice(), &open].concat(), displaced: Vec::new(), shapes: all };
+    let mut current =
+        Attribution { named_effects: [asked.as_slice(), &open].concat(), displaced_effects: Vec::new(), shapes: all };
     while let Some(next) = named_structures.without_name(&current, &none, is_asked) {
         current = next;
     }
     // Named effects with shapes must also explain more than a random moment without either.
-    let [random, power] = none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.power]);
+    let [random, power] =
+        none.as_ref().map_or([f64::INFINITY, 1.0], |shapes| [shapes.random_criterion, shapes.likelihood_power]);
     if current.has_significant_shapes() && power * (random - criterion(&current.shapes)) < 2.0 * MIN_GAIN_NATS {
-        return Attribution { named: asked, displaced: open, shapes: none };
+        return Attribution { named_effects: asked, displaced_effects: open, shapes: none };
     }
     current
 }
@@ -92,28 +98,28 @@ pub fn attribute(
 /// [`MAX_EQUIVALENT_GAIN_NATS`], by a random law with any gain.
 fn is_better(without: &Option<ShapeAnalysis>, with: &Option<ShapeAnalysis>) -> bool {
     let is_shape = without.as_ref().is_some_and(ShapeAnalysis::has_significant_shapes);
-    let power = without.as_ref().map_or(1.0, |shapes| shapes.power);
+    let power = without.as_ref().map_or(1.0, |shapes| shapes.likelihood_power);
     power * (criterion(with) - criterion(without)) > if is_shape { 2.0 * MAX_EQUIVALENT_GAIN_NATS } else { 0.0 }
 }
 
 /// Criterion −2 log p + penalties of the best explanation by shapes; infinite without a shape analysis.
 fn criterion(shapes: &Option<ShapeAnalysis>) -> f64 {
-    shapes.as_ref().map_or(f64::INFINITY, |shapes| shapes.best.criterion)
+    shapes.as_ref().map_or(f64::INFINITY, |shapes| shapes.best_explanation.criterion)
 }
 
 impl NamedStructures<'_> {
     /// Adds dropped effects again as long as they improve the criterion in addition to the shapes.
     fn with_names(&self, mut current: Attribution) -> Attribution {
         loop {
-            let with = (0..current.displaced.len()).map(|place| {
-                let named = [current.named.as_slice(), &current.displaced[place..=place]].concat();
+            let with = (0..current.displaced_effects.len()).map(|place| {
+                let named = [current.named_effects.as_slice(), &current.displaced_effects[place..=place]].concat();
                 (place, self.shapes(&named))
             });
             let lowest = with.min_by(|(_, a), (_, b)| criterion(a).total_cmp(&criterion(b)));
             match lowest.filter(|(_, with)| criterion(with) < criterion(&current.shapes)) {
                 Some((place, shapes)) => {
-                    let effect = current.displaced.remove(place);
-                    current.named.push(effect);
+                    let effect = current.displaced_effects.remove(place);
+                    current.named_effects.push(effect);
                     current.shapes = shapes;
                 }
                 None => return current,
@@ -129,12 +135,17 @@ impl NamedStructures<'_> {
         none: &Option<ShapeAnalysis>,
         is_asked: impl Fn(&EffectNaming) -> bool,
     ) -> Option<Attribution> {
-        let open: Vec<usize> = (0..current.named.len()).filter(|&place| !is_asked(&current.named[place])).collect();
+        let open: Vec<usize> =
+            (0..current.named_effects.len()).filter(|&place| !is_asked(&current.named_effects[place])).collect();
         let without = open.iter().map(|&place| {
-            let mut named = current.named.clone();
+            let mut named = current.named_effects.clone();
             let effect = named.remove(place);
             let shapes = if open.len() == 1 { none.clone() } else { self.shapes(&named) };
-            Attribution { named, displaced: [current.displaced.as_slice(), &[effect]].concat(), shapes }
+            Attribution {
+                named_effects: named,
+                displaced_effects: [current.displaced_effects.as_slice(), &[effect]].concat(),
+                shapes,
+            }
         });
         let lowest = without.min_by(|a, b| criterion(&a.shapes).total_cmp(&criterion(&b.shapes)));
         lowest.filter(|next| is_better(&next.shapes, &current.shapes))
@@ -152,7 +163,8 @@ impl NamedStructures<'_> {
     /// structure, without a fitted coefficient, or if the covariance is singular.
     fn p_value(&self, name: TermName) -> Option<f64> {
         let with = |fit: &StructureFit| fit.structure.terms.iter().position(|term| term.name() == name);
-        let (fit, place) = self.structures.all.iter().find_map(|weighed| Some((&weighed.fit, with(&weighed.fit)?)))?;
+        let (fit, place) =
+            self.structures.weighed.iter().find_map(|weighed| Some((&weighed.fit, with(&weighed.fit)?)))?;
         let (term, range) = (&fit.structure.terms[place], fit.structure.term_ranges()[place].clone());
         let sizes: Vec<(usize, f64)> = (range.zip(&term.priors).zip(term.neutral()))
             .filter(|((_, prior), _)| prior.is_fitted() && !prior.is_shape)
@@ -164,13 +176,13 @@ impl NamedStructures<'_> {
     /// Shape analysis of the residual of the named effects.
     fn shapes(&self, named: &[EffectNaming]) -> Option<ShapeAnalysis> {
         let names: Vec<TermName> = named.iter().map(|effect| effect.term).collect();
-        shape::analyse_shapes(self.problem, &self.fit(&names)?, &self.full.law)
+        shape::analyse_shapes(self.problem, &self.fit(&names)?, &self.full.noise_law)
     }
 
     /// Fit of the structure with these terms: weighed before, or a new fit from their values in other structures.
     /// `None` if a term is no candidate.
     fn fit(&self, names: &[TermName]) -> Option<StructureFit> {
-        let weighed = || self.structures.all.iter().map(|weighed| &weighed.fit);
+        let weighed = || self.structures.weighed.iter().map(|weighed| &weighed.fit);
         let is_same = |fit: &&StructureFit| {
             let terms = &fit.structure.terms;
             terms.len() == names.len() && terms.iter().all(|term| names.contains(&term.name()))
@@ -198,7 +210,7 @@ impl NamedStructures<'_> {
         if terms.len() != names.len() {
             return None;
         }
-        let whitening = self.problem.whitening(&self.full.law);
+        let whitening = self.problem.whitening(&self.full.noise_law);
         let structure = best.structure.with_terms(terms);
         Some(self.problem.fit(&structure, theta, best.initial.clone(), &whitening, StoppingRule::FINE))
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use ship::dynamics::Dynamics;
-use ship::effects::{Effect, Parameter, Prior};
+use ship::effects::{Effect, Parameter, ParameterPrior};
 use ship::replay::replay_states;
 use ship::response::{BASE_PARAMETER_COUNT, BASE_PARAMETERS};
 use ship::{EffectReal, Real, Replayable, Response, ResponseModel};
@@ -36,7 +36,7 @@ pub struct Term {
     /// Index of the record in which the effect acts; `None` for all records.
     pub record_index: Option<usize>,
     /// Priors of the parameters.
-    pub priors: Vec<Prior>,
+    pub priors: Vec<ParameterPrior>,
     /// Log prior odds of the term.
     pub log_odds: f64,
 }
@@ -52,11 +52,12 @@ impl Term {
 
     /// Parameter values at which the effect is absent; shape parameters at their prior means.
     pub fn neutral(&self) -> Vec<f64> {
-        let value = |(prior, parameter): (&Prior, &Parameter)| match (prior.is_shape, prior.reference) {
-            (true, _) => prior.mean,
-            (false, Some(_)) => 0.0,
-            (false, None) => parameter.neutral,
-        };
+        let value =
+            |(prior, parameter): (&ParameterPrior, &Parameter)| match (prior.is_shape, prior.reference_parameter) {
+                (true, _) => prior.mean,
+                (false, Some(_)) => 0.0,
+                (false, None) => parameter.neutral,
+            };
         self.priors.iter().zip(self.effect.parameters()).map(value).collect()
     }
 }
@@ -67,7 +68,7 @@ pub struct ModelParameter {
     /// Name and unit.
     pub parameter: &'static Parameter,
     /// Prior distribution, in the unit of the parameter.
-    pub prior: Prior,
+    pub prior: ParameterPrior,
     /// Index of the record to which the parameter belongs; `None` for all records.
     pub record_index: Option<usize>,
 }
@@ -89,15 +90,15 @@ pub struct Structure {
     /// Number of records.
     pub record_count: usize,
     /// Ship time L/U, s.
-    pub time: f64,
+    pub ship_length_time: f64,
     /// Terms, in the order in which the rudder passes through them.
     pub terms: Vec<Arc<Term>>,
 }
 
 impl Structure {
-    /// Base alone, for a number of records and L/U = `time` (s).
-    pub fn base(record_count: usize, time: f64) -> Self {
-        Self { record_count, time, terms: Vec::new() }
+    /// Base alone, for a number of records and L/U = `ship_length_time` (s).
+    pub fn base(record_count: usize, ship_length_time: f64) -> Self {
+        Self { record_count, ship_length_time, terms: Vec::new() }
     }
 
     /// Structure of the same base with other terms.
@@ -136,10 +137,11 @@ impl Structure {
     pub fn entries(&self) -> Vec<ModelParameter> {
         let base = |k: usize, sd: f64, record_index| ModelParameter {
             parameter: &BASE_PARAMETERS[k],
-            prior: Prior::normal(&BASE_PARAMETERS[k], 0.0, sd),
+            prior: ParameterPrior::normal(&BASE_PARAMETERS[k], 0.0, sd),
             record_index,
         };
-        let scale = [BASE_SD[0] / self.time, BASE_SD[1] / (self.time * self.time), BIAS_SD];
+        let scale =
+            [BASE_SD[0] / self.ship_length_time, BASE_SD[1] / (self.ship_length_time * self.ship_length_time), BIAS_SD];
         let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETER_COUNT).map(|k| base(k, scale[k], None)).collect();
         entries.extend((0..self.deviations()).map(|record| base(2, RECORD_BIAS_SD, Some(record))));
         for term in &self.terms {
@@ -151,7 +153,7 @@ impl Structure {
     }
 
     /// Priors of the fitted entries, with their values.
-    pub fn fitted_priors(&self, theta: &[f64]) -> Vec<(Prior, f64)> {
+    pub fn fitted_priors(&self, theta: &[f64]) -> Vec<(ParameterPrior, f64)> {
         let fitted = self.entries().into_iter().zip(theta).filter(|(entry, _)| entry.prior.is_fitted());
         fitted.map(|(entry, &value)| (entry.prior, value)).collect()
     }
@@ -194,7 +196,8 @@ impl Structure {
     /// Entries of θ that are given relative to another entry: index, index of the reference.
     fn relative(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.terms.iter().zip(self.term_ranges()).flat_map(|(term, range)| {
-            let reference = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.reference?));
+            let reference =
+                |(place, prior): (usize, &ParameterPrior)| Some((place, range.start + prior.reference_parameter?));
             range.clone().zip(&term.priors).filter_map(reference).collect::<Vec<_>>()
         })
     }
@@ -233,7 +236,7 @@ impl Structure {
         if let Some(record) = record.filter(|_| self.deviations() > 0) {
             values[2] += theta[BASE_PARAMETER_COUNT + record];
         }
-        (Self { record_count: 1, time: self.time, terms }, values)
+        (Self { record_count: 1, ship_length_time: self.ship_length_time, terms }, values)
     }
 
     /// `true` if a term applies to a fitted record, or to any other record (`None`).
@@ -285,7 +288,7 @@ pub fn replay_headings<R: EffectReal>(
     let mut number = 0;
     let step = solver_step(response, record.spacing, STEPS);
     replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
-        if record.observed.get(number) == Some(&row) {
+        if record.observed_rows.get(number) == Some(&row) {
             visit(number, state[0]);
             number += 1;
         }
@@ -294,7 +297,7 @@ pub fn replay_headings<R: EffectReal>(
 
 #[cfg(test)]
 mod tests {
-    use ship::effects::{all, listed_effect};
+    use ship::effects::{all_effects, listed_effect};
 
     use super::*;
 
@@ -303,12 +306,13 @@ mod tests {
     #[test]
     fn terms_of_one_record_are_not_replayed_on_another() {
         let damping = listed_effect("nonlinear_damping", "r³");
-        let of_time: Vec<_> = all().into_iter().filter(|effect| effect.is_time_dependent()).collect();
+        let of_time: Vec<_> = all_effects().into_iter().filter(|effect| effect.is_time_dependent()).collect();
         let has = |id: &&str| of_time.iter().any(|effect| effect.id() == *id);
         assert!(["moment_drift", "transient_disturbance"].iter().all(has));
         for (records, only) in [(1, None), (2, Some(0)), (2, Some(1))] {
             let term = |effect: &Arc<dyn Effect>| {
-                let priors = effect.parameters().iter().map(|parameter| Prior::normal(parameter, 0.0, 1.0)).collect();
+                let priors =
+                    effect.parameters().iter().map(|parameter| ParameterPrior::normal(parameter, 0.0, 1.0)).collect();
                 let only = only.filter(|_| effect.is_time_dependent());
                 Arc::new(Term { effect: Arc::clone(effect), record_index: only, priors, log_odds: 0.0 })
             };

@@ -14,9 +14,9 @@ use std::sync::OnceLock;
 
 use document::RandomMoment;
 use estimation::kalman::whitener::Whitener;
-use estimation::kalman::{MAX_STATES, Step, System};
+use estimation::kalman::{LinearStep, LinearSystem, MAX_STATES};
 use nalgebra::DMatrix;
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 
 use crate::record::PreparedRecord;
 
@@ -148,7 +148,7 @@ pub struct NoiseColour {
     /// damping, for gusts as if they were white. That of a smooth moment is the variance of its yaw acceleration.
     pub correlated: Option<(CorrelatedNoise, f64)>,
     /// Waves with `sd` in units of the white noise; `None` without waves.
-    pub waves: Option<NarrowBand>,
+    pub waves: Option<NarrowBandProcess>,
 }
 
 impl NoiseColour {
@@ -183,7 +183,7 @@ struct NoiseTransition {
     /// Initial variances of the states.
     initial: [f64; 4],
     /// Distinct time steps.
-    steps: Vec<Step<MAX_STATES>>,
+    steps: Vec<LinearStep<MAX_STATES>>,
     /// Index of the step before every observed row.
     of_row: Vec<usize>,
 }
@@ -207,7 +207,7 @@ impl NoiseTransition {
             })
         });
         let of_row = of_row.collect();
-        let steps = distinct.iter().map(|&h| Step::from_generator(&generator, intensity, h)).collect();
+        let steps = distinct.iter().map(|&h| LinearStep::from_generator(&generator, intensity, h)).collect();
         Self { states: generator.nrows(), initial, steps, of_row }
     }
 }
@@ -228,10 +228,11 @@ impl RecordNoise {
     /// Prepares the observed rows of a record for a ship of this 1/T (1/s); `longest` is the duration of the longest
     /// record (s), and a full row is the mean of `full_readings` readings.
     pub fn new(record: &PreparedRecord, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
-        let time = |number: usize| record.time[record.observed[number]];
-        let durations = (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
-        let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
-        let variances = record.observed.iter().map(variance).collect();
+        let time = |number: usize| record.time[record.observed_rows[number]];
+        let durations =
+            (0..record.observed_rows.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
+        let variance = |&row: &usize| full_readings as f64 / record.row_readings[row] as f64;
+        let variances = record.observed_rows.iter().map(variance).collect();
         // A course-unstable ship is steered back, so a random moment acts as on a neutrally stable ship.
         let damping = inverse_time.max(0.0);
         Self { durations, variances, longest, damping, transitions: Self::kinds().map(|_| OnceLock::new()).collect() }
@@ -249,7 +250,7 @@ impl RecordNoise {
     }
 
     /// Linear system of correlated noise and waves of this colour, and its number of states.
-    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<MAX_STATES>, usize) {
+    pub(crate) fn system(&self, colour: &NoiseColour) -> (LinearSystem<MAX_STATES>, usize) {
         let correlated = colour.correlated.map(|(kind, level)| {
             let place = Self::kinds().position(|other| other == kind).expect("a kind of the list");
             let new = || NoiseTransition::new(kind, self.damping, &self.durations, self.longest);
@@ -275,9 +276,10 @@ impl RecordNoise {
         });
         let of_row: Vec<usize> = of_row.collect();
         let still =
-            Step { transition: [[0.0; MAX_STATES]; MAX_STATES], process_noise: [[0.0; MAX_STATES]; MAX_STATES] };
+            LinearStep { transition: [[0.0; MAX_STATES]; MAX_STATES], process_noise: [[0.0; MAX_STATES]; MAX_STATES] };
         let step = |&(h, key): &(f64, usize)| {
-            let mut step = correlated.map_or(still, |(transition, level)| transition.steps[key].scaled(level));
+            let mut step =
+                correlated.map_or(still, |(transition, level)| transition.steps[key].with_scaled_noise(level));
             if let Some(waves) = &colour.waves {
                 add_waves(&mut step, first_wave, waves, h);
             }
@@ -286,12 +288,12 @@ impl RecordNoise {
         let steps = distinct.iter().map(step).collect();
         let second_output = colour.waves.filter(|_| first_wave > 0).map(|_| first_wave);
         let states = first_wave + if colour.waves.is_some() { 2 } else { 0 };
-        (System::from_rows(steps, initial, &of_row, &self.variances, second_output), states)
+        (LinearSystem::from_rows(steps, initial, &of_row, &self.variances, second_output), states)
     }
 }
 
 /// Adds waves to a step over h, as the two states from `first` on.
-fn add_waves(step: &mut Step<MAX_STATES>, first: usize, waves: &NarrowBand, h: f64) {
+fn add_waves(step: &mut LinearStep<MAX_STATES>, first: usize, waves: &NarrowBandProcess, h: f64) {
     let sea = waves.step(h);
     let (a, b) = (sea.advance([1.0, 0.0], [0.0; 2]), sea.advance([0.0, 1.0], [0.0; 2]));
     let (c, d) = (sea.advance([0.0; 2], [1.0, 0.0]), sea.advance([0.0; 2], [0.0, 1.0]));

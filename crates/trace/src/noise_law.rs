@@ -11,10 +11,10 @@ pub struct NoiseLaw {
     /// Colour, in units of the white noise of a row.
     pub colour: NoiseColour,
     /// Variance of the white noise of a full row of every record, rad².
-    pub variance: Vec<f64>,
+    pub row_variance: Vec<f64>,
     /// Power of the likelihood of every record: below one if the noise includes a model error, which more rows do not
     /// average out (coarsened posterior; Miller and Dunson 2019).
-    pub power: Vec<f64>,
+    pub likelihood_power: Vec<f64>,
 }
 
 impl NoiseLaw {
@@ -32,12 +32,12 @@ impl NoiseLaw {
     pub fn is_alike(&self, other: &Self) -> bool {
         let kind = |law: &Self| (law.colour.correlated.map(|(kind, _)| kind), law.colour.waves.is_some());
         let is_similar = |(a, b): (&f64, &f64)| (a / b).ln().abs() < 0.4;
-        kind(self) == kind(other) && self.variance.iter().zip(&other.variance).all(is_similar)
+        kind(self) == kind(other) && self.row_variance.iter().zip(&other.row_variance).all(is_similar)
     }
 
     /// White noise of one variance (rad²) in all records.
     pub fn white(records: usize, variance: f64) -> Self {
-        Self { colour: NoiseColour::WHITE, variance: vec![variance; records], power: vec![1.0; records] }
+        Self { colour: NoiseColour::WHITE, row_variance: vec![variance; records], likelihood_power: vec![1.0; records] }
     }
 }
 

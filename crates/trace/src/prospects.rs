@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use document::names;
-use document::trace::{EffectEntry, Outcome, TermEntry};
+use document::trace::{CandidateOutcome, EffectEntry, TermEntry};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use trial::Trial;
@@ -27,13 +27,13 @@ pub struct PlannedTrialValue {
     /// Name of the manoeuvre.
     pub name: String,
     /// Pairs (named effect, alias) that the records and this trial together would separate.
-    pub separated: Vec<[String; 2]>,
+    pub separated_pairs: Vec<[String; 2]>,
     /// Pairs (named effect, alias) that would stay inseparable.
-    pub inseparable: Vec<[String; 2]>,
+    pub inseparable_pairs: Vec<[String; 2]>,
     /// Unobservable effects that this trial would reveal.
-    pub revealed: Vec<String>,
+    pub revealed_effects: Vec<String>,
     /// Effects that would stay unobservable.
-    pub unobservable: Vec<String>,
+    pub unobservable_effects: Vec<String>,
     /// Σ log(1 + visibility) over all candidates; ranks trials that separate and reveal equally many.
     pub information: f64,
 }
@@ -47,7 +47,7 @@ impl Analysis {
     pub fn planned_trial_values(&self, planned: &[(String, Trial)]) -> Vec<PlannedTrialValue> {
         let mut values: Vec<PlannedTrialValue> =
             planned.par_iter().filter_map(|(name, trial)| self.planned_trial_value(name, trial)).collect();
-        let rank = |value: &PlannedTrialValue| value.separated.len() + value.revealed.len();
+        let rank = |value: &PlannedTrialValue| value.separated_pairs.len() + value.revealed_effects.len();
         values.sort_by(|a, b| rank(b).cmp(&rank(a)).then(b.information.total_cmp(&a.information)));
         values
     }
@@ -56,30 +56,39 @@ impl Analysis {
         let visibility = self.visibility_with(trial)?;
         let is_visible = |label: &String| visibility.iter().any(|(name, x)| name == label && *x > MIN_VISIBILITY);
         let pair = |effect: &EffectEntry, other: &TermEntry| {
-            [(&effect.id, &effect.form), (&other.id, &other.form)].map(|(id, form)| names::effect_form(id, form))
+            [(&effect.id, &effect.form), (&other.id, &other.form)].map(|(id, form)| names::effect_form_name(id, form))
         };
         let effects = self.document.effects.iter();
         let pairs = effects.flat_map(|effect| effect.alias_forms.iter().map(|other| pair(effect, other)));
         let (separated, inseparable) = pairs.partition(|pair| pair.iter().all(is_visible));
         let hidden = self.document.candidates.iter().flat_map(|candidate| {
             let forms = candidate.forms.iter();
-            let hidden = forms.filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none());
-            hidden.map(|form| names::effect_form(&candidate.id, &form.form))
+            let hidden = forms.filter(|form| form.outcome == CandidateOutcome::NotObservable && form.only.is_none());
+            hidden.map(|form| names::effect_form_name(&candidate.id, &form.form))
         });
         let (revealed, unobservable) = hidden.partition(is_visible);
         let information = visibility.iter().map(|(_, visibility)| visibility.ln_1p()).sum();
-        Some(PlannedTrialValue { name: name.to_owned(), separated, inseparable, revealed, unobservable, information })
+        Some(PlannedTrialValue {
+            name: name.to_owned(),
+            separated_pairs: separated,
+            inseparable_pairs: inseparable,
+            revealed_effects: revealed,
+            unobservable_effects: unobservable,
+            information,
+        })
     }
 
     /// Expected visibility of every candidate of the ship from the records and another trial; `None` if the
     /// precision is singular.
     fn visibility_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
-        let full = &self.full.fit;
+        let full = &self.full_model.fit;
         let (structure, theta) = full.structure.for_record(None, &full.theta);
-        let record = PreparedRecord::averaged(trial, self.problem.time);
-        let problem = FittedRecords::new(vec![record], theta[0], self.problem.time);
-        let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
-        let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
+        let record = PreparedRecord::averaged(trial, self.problem.ship_length_time);
+        let problem = FittedRecords::new(vec![record], theta[0], self.problem.ship_length_time);
+        let variance = self.full_model.noise_law.row_variance.iter().sum::<f64>()
+            / self.full_model.noise_law.row_variance.len() as f64;
+        let law =
+            NoiseLaw { row_variance: vec![variance], likelihood_power: vec![1.0], ..self.full_model.noise_law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
         let (normal, _) = problem.linearise(&structure, &theta, &[initial]).normal_equations(&problem.whitening(&law));
         let fitted = full.record_covariance(None)?.try_inverse()?;
@@ -93,7 +102,7 @@ impl Analysis {
                 let place = places[place].filter(|_| !prior.is_shape)?;
                 Some((prior.sd.powi(2) + (prior.mean - neutral).powi(2)) / covariance[(place, place)])
             });
-            (names::effect_form(term.effect.id(), term.effect.form()), squares.fold(0.0, f64::max))
+            (names::effect_form_name(term.effect.id(), term.effect.form()), squares.fold(0.0, f64::max))
         };
         Some(structure.terms.iter().zip(structure.term_ranges()).map(visibility).collect())
     }

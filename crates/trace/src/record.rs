@@ -8,7 +8,7 @@
 use std::f64::consts::{PI, TAU};
 
 use ship::replay::RecordedSignals;
-use ship::{Polyline, Real, Regressor, Replayable};
+use ship::{Polyline, Real, RegressorChannel, Replayable};
 use trial::{Channel, Trial};
 
 /// Minimum number of rows after averaging.
@@ -37,11 +37,11 @@ pub struct PreparedRecord {
     /// Heading of the rows, rad, the mean of their readings; NaN if it was not recorded.
     pub heading: Vec<f64>,
     /// Number of heading readings averaged in every row.
-    pub readings: Vec<usize>,
+    pub row_readings: Vec<usize>,
     /// Number of heading readings of a complete row.
     pub full_readings: usize,
     /// Indices of the rows with a heading.
-    pub observed: Vec<usize>,
+    pub observed_rows: Vec<usize>,
     /// Usual time between rows, s.
     pub spacing: f64,
     /// Usual time between values of the rudder, s.
@@ -51,26 +51,26 @@ pub struct PreparedRecord {
     /// Speed, m/s, measured or computed from surge and sway velocity; `None` if fewer than half of the rows have it.
     pub speed: Option<Polyline>,
     /// Sway velocity, m/s; `None` if fewer than half of the rows have it.
-    pub sway: Option<Polyline>,
+    pub sway_velocity: Option<Polyline>,
     /// Relative wind speed, m/s, measured or computed from the true wind; `None` unless at least half of the rows have
     /// speed and direction.
     pub wind_speed: Option<Polyline>,
     /// Direction from which the relative wind comes, rad from the bow, unwrapped; `None` as for the wind speed.
     pub wind_from: Option<Polyline>,
     /// Propeller revolutions, 1/s; `None` if fewer than half of the rows have them.
-    pub propeller: Option<Polyline>,
+    pub propeller_rate: Option<Polyline>,
 }
 
 impl PreparedRecord {
-    /// Record averaged to about `MIN_ROWS_PER_TIME` rows per `time` (s, ship time L/U), within `MIN_ROWS` and
+    /// Record averaged to about `MIN_ROWS_PER_TIME` rows per `ship_length_time` (L/U, s), within `MIN_ROWS` and
     /// `MAX_ROWS`.
-    pub fn averaged(trial: &Trial, time: f64) -> Self {
+    pub fn averaged(trial: &Trial, ship_length_time: f64) -> Self {
         let rows =
             trial.observed_rows().last().zip(trial.observed_rows().next()).map_or(0, |(last, first)| last - first + 1);
         let per_heading = (rows / trial.observed_rows().count().max(1)).max(1);
         let headings = trial.len() / per_heading;
         // Trial rows per averaged row.
-        let share = time.min(0.1 * trial.duration()) / (MIN_ROWS_PER_TIME * trial.sampling_period());
+        let share = ship_length_time.min(0.1 * trial.duration()) / (MIN_ROWS_PER_TIME * trial.sampling_period());
         let group = ((share / per_heading as f64) as usize).min(headings / MIN_ROWS).max(1);
         let group = group.max(headings.div_ceil(MAX_ROWS));
         let rudder = if group == 1 && per_heading > 1 {
@@ -122,16 +122,16 @@ impl PreparedRecord {
             .and_then(|[speed, from]| Some((signal(Some(take(&speed)))?, signal(Some(take(&unwrapped(&from))))?)));
         let (wind_speed, wind_from) = wind.unzip();
         Self {
-            readings,
+            row_readings: readings,
             full_readings,
-            observed,
+            observed_rows: observed,
             spacing: period * heading_rows as f64,
             rudder_spacing: period * signal_rows as f64,
             speed: signal(speed),
-            sway: signal(channel(Channel::Sway)),
+            sway_velocity: signal(channel(Channel::Sway)),
             wind_speed,
             wind_from,
-            propeller: signal(channel(Channel::PropellerRate)),
+            propeller_rate: signal(channel(Channel::PropellerRate)),
             rudder: Polyline::new(signal_time, take(trial.rudder())).expect("means of increasing times increase"),
             time,
             heading,
@@ -143,11 +143,11 @@ impl PreparedRecord {
         let needed = |channel| ship.needs(channel);
         RecordedSignals {
             rudder: &self.rudder,
-            speed: self.speed.as_ref().filter(|_| needed(Regressor::Speed)),
-            sway: self.sway.as_ref().filter(|_| needed(Regressor::Sway)),
-            wind_speed: self.wind_speed.as_ref().filter(|_| needed(Regressor::Wind)),
-            wind_from: self.wind_from.as_ref().filter(|_| needed(Regressor::Wind)),
-            propeller: self.propeller.as_ref().filter(|_| needed(Regressor::Propeller)),
+            speed: self.speed.as_ref().filter(|_| needed(RegressorChannel::Speed)),
+            sway: self.sway_velocity.as_ref().filter(|_| needed(RegressorChannel::Sway)),
+            wind_speed: self.wind_speed.as_ref().filter(|_| needed(RegressorChannel::Wind)),
+            wind_from: self.wind_from.as_ref().filter(|_| needed(RegressorChannel::Wind)),
+            propeller_rate: self.propeller_rate.as_ref().filter(|_| needed(RegressorChannel::Propeller)),
         }
     }
 
@@ -220,7 +220,7 @@ mod tests {
         let heading = time.iter().enumerate().map(|(k, t)| if k % 4 == 1 { f64::NAN } else { 0.01 * t }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let record = PreparedRecord::averaged(&of_columns(time, heading, rudder), 10.0);
-        assert_eq!((record.full_readings, record.readings.iter().sum::<usize>()), (9, 4500));
+        assert_eq!((record.full_readings, record.row_readings.iter().sum::<usize>()), (9, 4500));
         for (&time, &heading) in record.time.iter().zip(&record.heading) {
             assert!((heading - 0.01 * time).abs() < 1e-12);
         }
@@ -233,8 +233,8 @@ mod tests {
         let heading = time.iter().enumerate().map(|(k, t)| if k % 10 == 0 { 0.01 * t } else { f64::NAN }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let record = PreparedRecord::averaged(&of_columns(time, heading, rudder), 16.0);
-        assert_eq!((record.full_readings, record.observed.len(), record.rudder.values().len()), (1, 601, 2001));
-        assert!(record.observed.iter().all(|&row| record.readings[row] == 1));
+        assert_eq!((record.full_readings, record.observed_rows.len(), record.rudder.values().len()), (1, 601, 2001));
+        assert!(record.observed_rows.iter().all(|&row| record.row_readings[row] == 1));
     }
 
     #[test]

@@ -6,7 +6,7 @@
 
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector};
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use ship::{FirstOrder, Polyline};
 
 use crate::average::ModelAverage;
@@ -79,7 +79,7 @@ impl<'a> RecordMoment<'a> {
         let residual = self.residual(plain);
         let [bias, slow] = self.regressions.each_ref().map(|regression| regression.solve(&residual).1);
         let bias = bias.min(plain.rms());
-        MomentErrors { bias, slow: slow.min(bias) }
+        MomentErrors { with_bias: bias, with_slow_moment: slow.min(bias) }
     }
 
     /// Errors of an average with a moment. `plain` is its replay without one, which is kept if the replays of the
@@ -108,12 +108,12 @@ impl<'a> RecordMoment<'a> {
             error
         };
         let [bias, slow] = &self.regressions;
-        MomentErrors { bias: search(bias, MAX_REPLAYS[0]), slow: search(slow, MAX_REPLAYS[1]) }
+        MomentErrors { with_bias: search(bias, MAX_REPLAYS[0]), with_slow_moment: search(slow, MAX_REPLAYS[1]) }
     }
 
     /// Recorded minus replayed heading at the observed rows, rad.
     fn residual(&self, replay: &Replay) -> DVector<f64> {
-        let observed = &self.record.observed;
+        let observed = &self.record.observed_rows;
         DVector::from_iterator(observed.len(), observed.iter().map(|&row| replay.residual[row]))
     }
 
@@ -136,8 +136,8 @@ fn interval(record: &PreparedRecord) -> f64 {
 /// Heading responses of the base at the observed rows to a unit initial heading, a unit initial yaw rate, and a unit
 /// rudder angle at every knot.
 fn headings(record: &PreparedRecord, base: &FirstOrder) -> DMatrix<f64> {
-    let mut columns = DMatrix::from_element(record.observed.len(), 2 + KNOTS, 1.0);
-    let mut states = [State::default(); 1 + KNOTS];
+    let mut columns = DMatrix::from_element(record.observed_rows.len(), 2 + KNOTS, 1.0);
+    let mut states = [YawState::default(); 1 + KNOTS];
     states[0].yaw_rate = 1.0;
     let interval = interval(record);
     let moment = |row: usize, number: usize| {
@@ -146,12 +146,12 @@ fn headings(record: &PreparedRecord, base: &FirstOrder) -> DMatrix<f64> {
         if number == 0 { 0.0 } else { base.K_over_T * (1.0 - (place - (number - 1) as f64).abs()).max(0.0) }
     };
     let mut row = 0;
-    for (place, &observed) in record.observed.iter().enumerate() {
+    for (place, &observed) in record.observed_rows.iter().enumerate() {
         while row < observed {
-            let transition = Transition::new(base.inverse_T, record.time[row + 1] - record.time[row]);
+            let transition = FirstOrderTransition::new(base.inverse_T, record.time[row + 1] - record.time[row]);
             for (number, state) in states.iter_mut().enumerate() {
                 let [from, to] = [row, row + 1].map(|row| moment(row, number));
-                *state = transition.advance(*state, from, (to - from) / transition.h);
+                *state = transition.advance(*state, from, (to - from) / transition.time_step);
             }
             row += 1;
         }
@@ -174,7 +174,7 @@ mod tests {
     }
 
     fn deg(errors: MomentErrors) -> [f64; 2] {
-        [errors.bias, errors.slow].map(f64::to_degrees)
+        [errors.with_bias, errors.with_slow_moment].map(f64::to_degrees)
     }
 
     /// The base is linear: iterated replays agree with one least-squares solution, for either sign of T.
@@ -206,15 +206,19 @@ mod tests {
             let analysis = trace(&drifting, &[moved(&plain(2, 15.0), moment)], &settings).expect("a base");
             let effects = &analysis.document.effects;
             assert!(effects.iter().any(|effect| effect.id == "moment_drift"), "{effects:?}");
-            [&analysis.validation[0].before, &analysis.validation[0].after].map(|on| on.errors.clone())
+            [&analysis.validation[0].base_replay, &analysis.validation[0].average_replay].map(|on| on.errors.clone())
         };
         let [base, average] = errors(|_| 0.01, true);
         let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
-        assert!(average.heading.to_degrees() > 2.0 && bias < 0.12 && slow < 0.06, "{average:?}");
-        assert!(base.fitted_moment_errors.is_some_and(|with| with.bias < 0.5 * base.heading), "{base:?}");
+        assert!(average.heading_rmse.to_degrees() > 2.0 && bias < 0.12 && slow < 0.06, "{average:?}");
+        assert!(base.fitted_moment_errors.is_some_and(|with| with.with_bias < 0.5 * base.heading_rmse), "{base:?}");
         let hurried = errors(|_| 0.01, false);
         assert!(hurried.iter().all(|on| on.fitted_moment_errors.is_none()));
-        assert_eq!(hurried.map(|on| on.heading), [base.heading, average.heading], "the plain errors stay");
+        assert_eq!(
+            hurried.map(|on| on.heading_rmse),
+            [base.heading_rmse, average.heading_rmse],
+            "the plain errors stay"
+        );
         let [_, average] = errors(|t| 0.01 * (t / 80.0).sin(), true);
         let [bias, slow] = deg(average.fitted_moment_errors.expect("a thorough analysis"));
         assert!(bias > 0.4 && slow < 0.07, "{bias} and {slow} deg");

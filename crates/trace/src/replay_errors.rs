@@ -46,9 +46,9 @@ const MIN_DECREASE: f64 = 1e-7;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentErrors {
     /// Error with a rudder bias, rad.
-    pub bias: f64,
+    pub with_bias: f64,
     /// Error with a piecewise linear moment of five knots, rad.
-    pub slow: f64,
+    pub with_slow_moment: f64,
 }
 
 /// Error of replays restarted after every window of one duration.
@@ -57,22 +57,22 @@ pub struct WindowError {
     /// Duration of the windows, s.
     pub duration: f64,
     /// Root mean square heading error, rad; `None` if a window holds too few headings or has no finite replay.
-    pub heading: Option<f64>,
+    pub heading_rmse: Option<f64>,
 }
 
 /// Replay errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReplayErrors {
     /// Root mean square heading error of the full replay, rad.
-    pub heading: f64,
+    pub heading_rmse: f64,
     /// Number of headings compared.
-    pub rows: usize,
+    pub heading_count: usize,
     /// Root mean square yaw-rate error of the full replay, rad/s; `None` without a measured yaw rate, and at
     /// [`ReplayDepth::Heading`].
-    pub yaw_rate: Option<f64>,
+    pub yaw_rate_rmse: Option<f64>,
     /// Mean absolute error of the overshoot angles, rad; `None` unless record and replay are zig-zags, and at
     /// [`ReplayDepth::Heading`].
-    pub overshoot: Option<f64>,
+    pub overshoot_error: Option<f64>,
     /// Errors of the restarted replays, by duration of the windows.
     pub windows: Vec<WindowError>,
     /// Heading errors after a moment is fitted to this record in addition to its initial state; `None` except in a
@@ -82,8 +82,8 @@ pub struct ReplayErrors {
 
 impl ReplayErrors {
     /// Root mean square heading error of replays restarted every `duration` seconds, rad; `None` without such replays.
-    pub fn restarted_rms(&self, duration: f64) -> Option<f64> {
-        self.windows.iter().find(|window| window.duration == duration)?.heading
+    pub fn restarted_heading_rmse(&self, duration: f64) -> Option<f64> {
+        self.windows.iter().find(|window| window.duration == duration)?.heading_rmse
     }
 }
 
@@ -162,7 +162,7 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     let range = first..first + replayed.time.len();
     let channels: BTreeMap<Channel, Vec<f64>> =
         [(Channel::Heading, replayed.heading.clone()), (Channel::Rudder, trial.rudder()[range].to_vec())].into();
-    let columns = Columns { time: replayed.time.clone(), channels, unknown: Vec::new() };
+    let columns = Columns { time: replayed.time.clone(), channels, unknown_columns: Vec::new() };
     let twin = Trial::new(trial.name(), trial.origin().clone(), columns).ok()?;
     ZigZag::from_trial(&twin).ok()
 }

@@ -10,7 +10,7 @@ use estimation::residuals::{GappedSeries, whiteness_test};
 use ship::angle::to_deg;
 use ship::effects::{self, Effect, Parameter};
 use ship::particulars::prime_unit;
-use ship::{Particulars, Regressor};
+use ship::{Particulars, RegressorChannel};
 use trial::Trial;
 
 use crate::base::FittedBase;
@@ -40,7 +40,7 @@ pub struct TraceParts<'a> {
     /// First-order base with its replays.
     pub base: &'a FittedBase,
     /// Full model with its noise law.
-    pub full: &'a FullModel,
+    pub full_model: &'a FullModel,
     /// Structures with their probabilities.
     pub structures: &'a Structures,
     /// Candidate terms.
@@ -56,7 +56,7 @@ pub struct TraceParts<'a> {
     /// Named effects and shapes.
     pub attribution: &'a Attribution,
     /// Times of the removed compass outliers of the fitted records, s.
-    pub outliers: &'a [Vec<f64>],
+    pub outlier_times: &'a [Vec<f64>],
     /// Measurement error of the rudder of every fitted record; `None` without one.
     pub rudder_noises: &'a [Option<RudderNoise>],
     /// `true` if the replay of the base is kept on the fitted records.
@@ -64,7 +64,7 @@ pub struct TraceParts<'a> {
     /// `true` if the reported replays of the average include fitted hulls.
     pub has_hulls: bool,
     /// Prepared records.
-    pub problem: &'a FittedRecords,
+    pub fitted_records: &'a FittedRecords,
 }
 
 /// Minimum visibility of an observable candidate.
@@ -75,9 +75,9 @@ const MAX_LISTED: usize = 20;
 
 impl TraceParts<'_> {
     /// Document of the trace.
-    pub fn document(&self) -> Document {
+    pub fn document(&self) -> AnalysisDocument {
         let selection = &self.settings.selection;
-        let mut named = self.attribution.named.clone();
+        let mut named = self.attribution.named_effects.clone();
         named.retain(|naming| self.residual_analysis.is_credible || selection.requires(naming.term.0));
         let effects = self.effects(&named);
         let residual_peak = self.residual_analysis.residual_peak.as_ref();
@@ -94,7 +94,7 @@ impl TraceParts<'_> {
             located: &located,
             has_hulls: self.has_hulls,
         };
-        Document {
+        AnalysisDocument {
             schema: SCHEMA.into(),
             headline: headline.text(),
             verdict,
@@ -104,8 +104,8 @@ impl TraceParts<'_> {
             prior: PriorEntry {
                 candidates: self.candidates.len(),
                 probability: PRIOR_PROBABILITY,
-                probability_of_time: PRIOR_PROBABILITY_TIME_MOMENT,
-                named_from: self.settings.min_probability,
+                time_moment_probability: PRIOR_PROBABILITY_TIME_MOMENT,
+                min_named_probability: self.settings.min_probability,
                 odds_factors: prior_odds::PRIOR_ODDS_FACTORS.into(),
                 rule: self.settings.rule.as_str().into(),
             },
@@ -118,8 +118,8 @@ impl TraceParts<'_> {
             disturbance,
             located,
             residual: ResidualWhitenessEntry {
-                before: self.whiteness(|comparison| &comparison.before),
-                after: self.whiteness(|comparison| &comparison.after),
+                before: self.whiteness(|comparison| &comparison.base_replay),
+                after: self.whiteness(|comparison| &comparison.average_replay),
             },
             noise: self.noise(),
             model: ModelEntry {
@@ -128,7 +128,7 @@ impl TraceParts<'_> {
                     false => effects.iter().map(|effect| effect.equation.clone()).collect(),
                 },
                 indices,
-                parameters: self.structures.all.first().map_or_else(Vec::new, |best| self.parameters(&best.fit)),
+                parameters: self.structures.weighed.first().map_or_else(Vec::new, |best| self.parameters(&best.fit)),
             },
             error,
             effects,
@@ -136,20 +136,20 @@ impl TraceParts<'_> {
     }
 
     /// Verdict of the trace, the first that holds.
-    fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> Verdict {
+    fn verdict(&self, is_unnamed: bool, is_disturbed: bool) -> TraceVerdict {
         match (self.attribution.has_significant_shapes(), is_unnamed, is_disturbed) {
-            _ if self.residual_analysis.is_unexplained => Verdict::Unexplained,
-            (true, ..) => Verdict::Located,
-            (_, false, _) => Verdict::Traced,
-            (.., true) => Verdict::Disturbed,
-            _ => Verdict::Clean,
+            _ if self.residual_analysis.is_unexplained => TraceVerdict::Unexplained,
+            (true, ..) => TraceVerdict::Located,
+            (_, false, _) => TraceVerdict::Traced,
+            (.., true) => TraceVerdict::Disturbed,
+            _ => TraceVerdict::Clean,
         }
     }
 
     /// Text on the fitted records whose bands have less than their nominal coverage; empty without such records.
     fn bands(&self) -> String {
         let records = self.trials.iter().zip(self.identification);
-        let bands = records.filter_map(|(trial, comparison)| Some((trial, comparison.after.coverage()?)));
+        let bands = records.filter_map(|(trial, comparison)| Some((trial, comparison.average_replay.band_coverage()?)));
         bands
             .filter(|(_, band)| !band.is_nominal())
             .map(|(t, band)| sentences::band_sentence(&t.title(), &band))
@@ -176,7 +176,7 @@ impl TraceParts<'_> {
 
     /// K, T and δ_r averaged over the structures.
     fn indices(&self) -> Indices {
-        let members = self.structures.members();
+        let members = self.structures.weighted_members();
         let pair = |(weight, fit): &(f64, &StructureFit)| {
             let covariance = fit.covariance();
             let entry = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
@@ -208,7 +208,7 @@ impl TraceParts<'_> {
     }
 
     fn number(&self, parameter: &Parameter, value: Quantity, record: Option<usize>, at_bound: bool) -> ParameterEntry {
-        let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
+        let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| NondimensionalValue {
             quantity: value.scaled(ship.prime_factor(parameter.dimension())),
             unit: prime_unit(parameter.unit),
         });
@@ -218,8 +218,8 @@ impl TraceParts<'_> {
 
     /// Parameters of a term, averaged over the structures that have it.
     fn term_parameters(&self, name: TermName) -> BTreeMap<String, ParameterEntry> {
-        let members = self.structures.members().into_iter();
-        let all = members.chain(self.structures.all.iter().map(|weighed| (1e-9 * weighed.weight, &weighed.fit)));
+        let members = self.structures.weighted_members().into_iter();
+        let all = members.chain(self.structures.weighed.iter().map(|weighed| (1e-9 * weighed.weight, &weighed.fit)));
         let with = all.filter_map(|(weight, fit)| {
             let place = fit.structure.terms.iter().position(|term| term.name() == name)?;
             let range = fit.structure.term_ranges()[place].clone();
@@ -267,14 +267,14 @@ impl TraceParts<'_> {
 
     /// Waves as a named effect, if the noise law includes them.
     fn waves(&self) -> Option<EffectEntry> {
-        let sea = self.full.law.colour.waves?;
+        let sea = self.full_model.noise_law.colour.waves?;
         let waves = effects::WaveHeading;
-        let sd = sea.sd * self.full.law.variance[0].sqrt();
+        let sd = sea.sd * self.full_model.noise_law.row_variance[0].sqrt();
         let values = [sd, sea.frequency, sea.damping];
         let parameters = waves.parameters().iter().zip(values).map(|(parameter, value)| {
             (parameter.symbol.into(), self.number(parameter, Quantity::without_uncertainty(value), None, false))
         });
-        let gain = self.full.waves_gain;
+        let gain = self.full_model.waves_gain;
         let probability = |factor: f64| prior_odds::probability_from_log_ratio(0.5 * gain, factor);
         Some(EffectEntry {
             id: waves.id().into(),
@@ -297,7 +297,7 @@ impl TraceParts<'_> {
         let terms = self.candidates.iter().filter(|term| term.effect.id() == id);
         let forms: Vec<FormEntry> = terms.map(|term| self.form(term.name(), named)).collect();
         let is_sea = id == effects::WaveHeading.id();
-        let sea = self.full.law.colour.waves.is_some();
+        let sea = self.full_model.noise_law.colour.waves.is_some();
         let selection = &self.settings.selection;
         let excluded = !selection.allows(id);
         let mut effects = selection.effects();
@@ -308,7 +308,7 @@ impl TraceParts<'_> {
             _ if becalmed => Some("the record declares a calm (weather = \"none\")"),
             (true, false) if !is_sea => {
                 let needs = effects.iter().find_map(|form| form.needs());
-                Some(needs.map_or("the records cannot show it", Regressor::missing_message))
+                Some(needs.map_or("the records cannot show it", RegressorChannel::missing_message))
             }
             _ => None,
         };
@@ -318,9 +318,9 @@ impl TraceParts<'_> {
             false => self.structures.inclusion_probability(|name| name.0 == id),
         };
         let outcome = match (is_sea && !excluded && !becalmed, sea) {
-            (true, true) => Outcome::Added,
-            (true, false) => Outcome::Rejected,
-            _ => best.map_or(Outcome::NotObservable, |best| best.outcome),
+            (true, true) => CandidateOutcome::Added,
+            (true, false) => CandidateOutcome::Rejected,
+            _ => best.map_or(CandidateOutcome::NotObservable, |best| best.outcome),
         };
         CandidateEntry {
             id: id.into(),
@@ -339,13 +339,13 @@ impl TraceParts<'_> {
         let (_, form, record) = name;
         let visibility = self.structures.visibility.get(&name).copied();
         let outcome = if named.iter().any(|naming| naming.term == name) {
-            Outcome::Added
+            CandidateOutcome::Added
         } else if named.iter().any(|naming| naming.aliases.contains(&name) || naming.forms.contains(&name)) {
-            Outcome::Alias
+            CandidateOutcome::Alias
         } else if visibility.is_some_and(|visibility| visibility < MIN_VISIBILITY) {
-            Outcome::NotObservable
+            CandidateOutcome::NotObservable
         } else {
-            Outcome::Rejected
+            CandidateOutcome::Rejected
         };
         let evidence = self.structures.evidence.get(&name);
         FormEntry {
@@ -364,21 +364,21 @@ impl TraceParts<'_> {
     }
 
     fn listed(&self) -> Vec<StructureEntry> {
-        let members = self.structures.members().len();
+        let members = self.structures.weighted_members().len();
         let entry = |(number, weighed): (usize, &crate::structures::WeighedStructure)| StructureEntry {
             effects: weighed.fit.structure.terms.iter().map(|term| self.term(term.name())).collect(),
             weight: weighed.weight,
             parameters: self.parameters(&weighed.fit),
             member: number < members,
         };
-        self.structures.all.iter().take(MAX_LISTED).enumerate().map(entry).collect()
+        self.structures.weighed.iter().take(MAX_LISTED).enumerate().map(entry).collect()
     }
 
     fn errors(&self) -> ReplayErrorLists {
         let entry = |(trial, comparison): (&Trial, &RecordComparison)| RecordReplayErrors {
             file: sentences::record_label(trial),
-            before: (&comparison.before).into(),
-            after: (&comparison.after).into(),
+            before: (&comparison.base_replay).into(),
+            after: (&comparison.average_replay).into(),
             horizons: Vec::new(),
         };
         let unfitted = |(run, on)| RecordReplayErrors { horizons: RecordComparison::horizons(on), ..entry((run, on)) };
@@ -404,19 +404,19 @@ impl TraceParts<'_> {
 
     /// Heading noise of every fitted record.
     pub fn heading_noise(&self) -> Vec<HeadingNoise> {
-        let law = &self.full.law;
-        let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
+        let (law, base) = (&self.full_model.noise_law, &self.base.estimate.response);
+        let gain = self.structures.weighed.first().map_or(base.K_over_T, |best| best.fit.theta[1]);
         let noise = |(variance, record): (&f64, &PreparedRecord)| HeadingNoise {
             heading_sd_rad: (variance * record.full_readings as f64).sqrt(),
-            moment: law.colour.moment(*variance, self.problem.longest_duration(), gain.abs()),
+            moment: law.colour.moment(*variance, self.fitted_records.longest_duration(), gain.abs()),
         };
-        law.variance.iter().zip(&self.problem.records).map(noise).collect()
+        law.row_variance.iter().zip(&self.fitted_records.records).map(noise).collect()
     }
 
     fn noise(&self) -> Vec<RecordNoiseEntry> {
-        let law = &self.full.law;
+        let law = &self.full_model.noise_law;
         let entry = |(number, noise): (usize, HeadingNoise)| {
-            let variance = law.variance[number];
+            let variance = law.row_variance[number];
             let heading = law.colour.correlated.filter(|(kind, _)| kind.is_heading_error());
             let (kind, correlation) = match noise.moment {
                 RandomMoment::OrnsteinUhlenbeck { correlation_s, .. } => (noise.moment.kind(), Some(correlation_s)),
@@ -427,7 +427,7 @@ impl TraceParts<'_> {
                 heading_sd_deg: to_deg(noise.heading_sd_rad),
                 heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
                 heading_correlation_s: heading
-                    .and_then(|(law, _)| law.correlation_time(self.problem.longest_duration())),
+                    .and_then(|(law, _)| law.correlation_time(self.fitted_records.longest_duration())),
                 heading_wander: heading.map(|_| {
                     if law.includes_model_error() { HeadingErrorKind::Model } else { HeadingErrorKind::Compass }
                 }),
@@ -438,7 +438,7 @@ impl TraceParts<'_> {
                 waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
                 is_adequate: self.residual_analysis.is_noise,
                 rudder_sd_deg: self.rudder_noises[number].map(|error| to_deg(error.sd)),
-                outliers_s: self.outliers[number].clone(),
+                outliers_s: self.outlier_times[number].clone(),
             }
         };
         self.heading_noise().into_iter().enumerate().map(entry).collect()

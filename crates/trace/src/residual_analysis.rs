@@ -16,9 +16,9 @@ use crate::structures::Structures;
 
 /// Sums of squared heading errors over all records, rad²: base, average.
 pub fn heading_error_squares(all: &[RecordComparison]) -> [f64; 2] {
-    let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
-    let before = all.iter().map(|comparison| square(&comparison.before.errors)).sum();
-    [before, all.iter().map(|comparison| square(&comparison.after.errors)).sum()]
+    let square = |errors: &ReplayErrors| errors.heading_rmse.powi(2) * errors.heading_count as f64;
+    let before = all.iter().map(|comparison| square(&comparison.base_replay.errors)).sum();
+    [before, all.iter().map(|comparison| square(&comparison.average_replay.errors)).sum()]
 }
 
 /// Normalised innovations of a record: one-step prediction errors of the heading over their standard deviations. They
@@ -72,17 +72,22 @@ impl ResidualAnalysis {
         attribution: &Attribution,
         rudder_noises: &[Option<RudderNoise>],
     ) -> Self {
-        let Some(best) = structures.all.first() else {
+        let Some(best) = structures.weighed.first() else {
             return Self { is_noise: true, is_credible: true, is_unexplained: false, residual_peak: None };
         };
-        let is_covered = |fitted: &RecordComparison| fitted.after.coverage().is_none_or(|band| band.is_nominal());
-        let innovations = innovations(problem, &best.fit.residual, &full.law);
+        let is_covered =
+            |fitted: &RecordComparison| fitted.average_replay.band_coverage().is_none_or(|band| band.is_nominal());
+        let innovations = innovations(problem, &best.fit.residual, &full.noise_law);
         let is_noise = are_noise(&innovations) && identification.iter().all(is_covered);
         let [before, after] = heading_error_squares(identification);
         let is_credible = is_noise || after < before;
-        let rows: f64 = identification.iter().map(|fitted| fitted.after.errors.rows as f64).sum();
-        let white =
-            full.law.variance.iter().zip(&problem.records).map(|(row, record)| row * record.full_readings as f64);
+        let rows: f64 = identification.iter().map(|fitted| fitted.average_replay.errors.heading_count as f64).sum();
+        let white = full
+            .noise_law
+            .row_variance
+            .iter()
+            .zip(&problem.records)
+            .map(|(row, record)| row * record.full_readings as f64);
         let is_small = after / rows < MIN_UNEXPLAINED_SD * MIN_UNEXPLAINED_SD * white.fold(0.0, f64::max);
         let shapes = attribution.shapes.as_ref();
         let is_chance = match shapes {
@@ -91,7 +96,7 @@ impl ResidualAnalysis {
             }
             _ => is_noise,
         };
-        let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth);
+        let is_smooth = shapes.is_some_and(|shapes| shapes.is_smooth_moment);
         let is_large = !is_small && (after / before).sqrt() >= MIN_UNEXPLAINED_RATIO;
         // In a calm there is no random yaw moment, so an estimated random moment is unexplained.
         let is_calm =
@@ -105,9 +110,9 @@ impl ResidualAnalysis {
 
 /// Peak of the residual in the record with the largest error.
 fn largest_residual_peak(identification: &[RecordComparison], trials: &[Trial]) -> Option<ResidualPeak> {
-    let error = |number: usize| identification[number].after.errors.heading;
+    let error = |number: usize| identification[number].average_replay.errors.heading_rmse;
     let number = (0..identification.len()).max_by(|&a, &b| error(a).total_cmp(&error(b)))?;
-    let (ReplayResult { replay, .. }, trial) = (&identification[number].after, &trials[number]);
+    let (ReplayResult { replay, .. }, trial) = (&identification[number].average_replay, &trials[number]);
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = first..first + replay.time.len();
     let (heading, rudder) = (&trial.heading()[rows.clone()], &trial.rudder()[rows]);
@@ -128,7 +133,7 @@ pub fn innovations(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLa
     let whitened = |(number, (record, residual)): (usize, (&PreparedRecord, &Vec<f64>))| {
         let mut values = residual.clone();
         whitening.apply(number, &mut [&mut values]);
-        let time = record.observed.iter().map(|&row| record.time[row]).collect();
+        let time = record.observed_rows.iter().map(|&row| record.time[row]).collect();
         Innovations { time, spacing: record.spacing, values }
     };
     problem.records.iter().zip(residual).enumerate().map(whitened).collect()

@@ -8,12 +8,12 @@ pub struct ResidualPeak {
     /// Index of the record.
     pub record_index: usize,
     /// First and last time (s) of the eighth of the rows with the largest sum of squares, and its share of the total.
-    pub span: ([f64; 2], f64),
+    pub span_and_share: ([f64; 2], f64),
     /// Strongest line of the spectrum; `None` for fewer than four headings, or if nearly all of the record is gaps.
-    pub line: Option<SpectralLine>,
+    pub spectral_line: Option<SpectralLine>,
     /// Heading range (rad) of the quarter of the rows, sorted by heading, with the largest root mean square, and this
     /// root mean square, rad.
-    pub heading: ([f64; 2], f64),
+    pub heading_range_and_rms: ([f64; 2], f64),
     /// Root mean square with the rudder to port and to starboard, rad.
     pub side_rms: [f64; 2],
     /// Root mean square over the record, rad.
@@ -61,7 +61,7 @@ pub fn residual_peak(
         None => ([f64::NAN; 2], 0.0),
     };
     let series = GappedSeries::new(time, residual, spacing);
-    let line = periodogram(&series).into_iter().max_by(|a, b| a.share.total_cmp(&b.share));
+    let line = periodogram(&series).into_iter().max_by(|a, b| a.mean_square_share.total_cmp(&b.mean_square_share));
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&a, &b| heading[a].total_cmp(&heading[b]));
     let largest = by_heading
@@ -70,7 +70,14 @@ pub fn residual_peak(
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or(([0.0; 2], 0.0));
     let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
-    ResidualPeak { record_index, span, line, heading: largest, side_rms: [on(-1.0), on(1.0)], rms: whole }
+    ResidualPeak {
+        record_index,
+        span_and_share: span,
+        spectral_line: line,
+        heading_range_and_rms: largest,
+        side_rms: [on(-1.0), on(1.0)],
+        rms: whole,
+    }
 }
 
 #[cfg(test)]
@@ -84,7 +91,7 @@ mod tests {
         let time: Vec<f64> = (0..rows).map(f64::from).collect();
         let residual: Vec<f64> = (0..rows).map(|k| if (100_000..150_000).contains(&k) { 2.0 } else { 1.0 }).collect();
         let peak = residual_peak(0, &time, &residual, &time, &time, 1.0);
-        assert_eq!(peak.span.0, [100_000.0, 149_999.0]);
-        assert!((peak.span.1 - 200.0 / 550.0).abs() < 1e-9);
+        assert_eq!(peak.span_and_share.0, [100_000.0, 149_999.0]);
+        assert!((peak.span_and_share.1 - 200.0 / 550.0).abs() < 1e-9);
     }
 }

@@ -196,26 +196,27 @@ pub fn with_rudder_noise(
     let unit = CorrelatedNoise::WhiteMoment.size(1.0, problem.longest_duration()).powi(2);
     let least = |law: &NoiseLaw| {
         let intensities = errors.iter().map(|error| error.map_or(0.0, |error| error.intensity));
-        let levels = intensities.zip(&law.variance).map(|(rudder, variance)| gain * gain * rudder / (unit * variance));
+        let levels =
+            intensities.zip(&law.row_variance).map(|(rudder, variance)| gain * gain * rudder / (unit * variance));
         levels.sum::<f64>() / errors.len() as f64
     };
     let raise = |full: FullModel| {
-        let estimate = |kind| law::estimate(problem, &full.fit, &full.law.variance, false, &[kind]);
+        let estimate = |kind| law::estimate_noise_law(problem, &full.fit, &full.noise_law.row_variance, false, &[kind]);
         let white = estimate(CorrelatedNoise::WhiteMoment);
         let kind =
-            full.law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::WhiteMoment);
+            full.noise_law.colour.correlated.map(|(kind, _)| kind).filter(|kind| *kind != CorrelatedNoise::WhiteMoment);
         let is_other = kind.is_some_and(|kind| estimate(kind).criterion + MIN_CRITERION_DECREASE < white.criterion);
         // The size of waves is relative to the white noise, so a law with waves keeps its variances.
-        let mut law = if full.law.colour.waves.is_some() { full.law.clone() } else { white.law };
+        let mut law = if full.noise_law.colour.waves.is_some() { full.noise_law.clone() } else { white.noise_law };
         let level =
             law.colour.correlated.filter(|(kind, _)| *kind == CorrelatedNoise::WhiteMoment).map_or(0.0, |(_, x)| x);
         law.colour.correlated = Some((CorrelatedNoise::WhiteMoment, level.max(least(&law))));
-        let white = FullModel { law, ..full.clone() };
+        let white = FullModel { noise_law: law, ..full.clone() };
         [Some(white), is_other.then_some(full)]
     };
     let mut kept: Vec<FullModel> = Vec::new();
     for full in fulls.into_iter().flat_map(raise).flatten() {
-        if kept.iter().all(|other| !other.law.is_alike(&full.law)) {
+        if kept.iter().all(|other| !other.noise_law.is_alike(&full.noise_law)) {
             kept.push(full);
         }
     }

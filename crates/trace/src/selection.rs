@@ -12,12 +12,12 @@ pub struct EffectId(&'static str);
 impl EffectId {
     /// Listed effect of this name; `None` for any other name.
     pub fn find(name: &str) -> Option<Self> {
-        effects::all().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
+        effects::all_effects().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
     }
 
     /// Listed effects, in the order of reports.
     pub fn all() -> Vec<Self> {
-        let mut ids: Vec<Self> = effects::all().iter().map(|effect| Self(effect.id())).collect();
+        let mut ids: Vec<Self> = effects::all_effects().iter().map(|effect| Self(effect.id())).collect();
         // The forms of an effect follow one another.
         ids.dedup();
         ids
@@ -70,7 +70,7 @@ impl Selection {
     /// Effects in all their forms: the listed effects, then the formulas.
     pub fn effects(&self) -> Vec<Arc<dyn Effect>> {
         let formulas = self.formulas.iter().map(|formula| Arc::clone(formula) as Arc<dyn Effect>);
-        effects::all().into_iter().chain(formulas).collect()
+        effects::all_effects().into_iter().chain(formulas).collect()
     }
 
     /// Identifiers of all effects, in the order of reports.

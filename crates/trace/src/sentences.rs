@@ -2,12 +2,13 @@
 
 use document::names;
 use document::trace::{
-    DisturbanceEntry, EffectEntry, LocatedMomentEntry, ModelReplayErrors, RecordReplayErrors, ReplayErrorLists, Verdict,
+    DisturbanceEntry, EffectEntry, LocatedMomentEntry, ModelReplayErrors, RecordReplayErrors, ReplayErrorLists,
+    TraceVerdict,
 };
 use ship::angle::to_deg;
 use trial::{RecordOrigin, Trial};
 
-use crate::comparison::BandCoverage;
+use crate::comparison::ConfidenceBandCoverage;
 use crate::naming::EffectNaming;
 use crate::residual_peak::ResidualPeak;
 
@@ -68,8 +69,8 @@ fn percent(errors: Option<[f64; 2]>) -> Option<String> {
 
 /// Results that the headline of a trace states.
 pub struct Headline<'a> {
-    /// Verdict.
-    pub verdict: Verdict,
+    /// Verdict, which selects the sentence.
+    pub verdict: TraceVerdict,
     /// Named effects.
     pub effects: &'a [EffectEntry],
     /// Replay errors of base and average.
@@ -87,38 +88,40 @@ impl Headline<'_> {
     /// them on fitted and unfitted records, and the residual.
     pub fn text(&self) -> String {
         let name = |effect: &EffectEntry| match effect.aliases.is_empty() {
-            true => names::effect_form(&effect.id, &effect.form),
+            true => names::effect_form_name(&effect.id, &effect.form),
             false => {
                 let group = std::iter::once(&effect.id).chain(&effect.aliases);
-                format!("one of {}", listed(&group.map(|id| names::effect(id)).collect::<Vec<_>>()))
+                format!("one of {}", listed(&group.map(|id| names::effect_name(id)).collect::<Vec<_>>()))
             }
         };
         let names = listed(&self.effects.iter().map(name).collect::<Vec<_>>());
         let base = short(mean_errors(&self.error.identification, whole).map_or(f64::NAN, |[before, _]| before));
         let errors = self.errors();
         match (self.verdict, self.effects.is_empty()) {
-            (Verdict::Clean, _) => format!(
+            (TraceVerdict::Clean, _) => format!(
                 "Instrument noise alone explains the records; no missing effect is visible. The heading error of the \
                  first-order response is {base}°."
             ),
-            (Verdict::Disturbed, _) => format!(
+            (TraceVerdict::Disturbed, _) => format!(
                 "No effect is named, but the ship was disturbed: {} of the heading error of {base}°. Weather does \
                  this; so does an effect of a shape that was not searched for.",
                 self.moment()
             ),
-            (Verdict::Located, true) => format!("The missing yaw moment depends on {}. {errors}", self.shapes()),
+            (TraceVerdict::Located, true) => format!("The missing yaw moment depends on {}. {errors}", self.shapes()),
             (_, true) => format!(
                 "The first-order response lacks something that no listed effect explains. {errors} The residual is \
                  neither random nor of a shape that was searched for."
             ),
             (verdict, false) => {
-                let (more, residual) = match (verdict, self.disturbance) {
-                    (Verdict::Unexplained, _) => (", and something more", String::from(" The residual is not noise.")),
-                    (Verdict::Located, _) => ("", format!(" The residual depends on {}.", self.shapes())),
-                    (_, Some(_)) => ("", format!(" The residual is random: {} of it.", self.moment())),
-                    (_, None) => ("", String::new()),
+                let residual = match (verdict, self.disturbance) {
+                    (TraceVerdict::Unexplained, _) => {
+                        String::from(" This does not explain everything: the residual that remains is not noise.")
+                    }
+                    (TraceVerdict::Located, _) => format!(" The residual depends on {}.", self.shapes()),
+                    (_, Some(_)) => format!(" The residual is random: {} of it.", self.moment()),
+                    (_, None) => String::new(),
                 };
-                format!("The first-order response lacks {names}{more}. {}{errors}{residual}", self.one_step())
+                format!("The first-order response lacks {names}. {}{errors}{residual}", self.one_step())
             }
         }
     }
@@ -144,7 +147,8 @@ impl Headline<'_> {
         format!("{condition}{hulls} the heading error is {after}° instead of {before}°{replays}.{windows}")
     }
 
-    /// Sentence on effects that improve one-step predictions but hardly the full replay; empty if it improves as well.
+    /// Sentence on effects that improve one-step predictions, with the falls of the BIC, but hardly the full replay;
+    /// empty if the heading error of the full replay of the fitted records is at most [`UNCHANGED_SHARE`] of the base.
     fn one_step(&self) -> String {
         let errors = mean_errors(&self.error.identification, whole);
         if errors.is_none_or(|[before, after]| after <= UNCHANGED_SHARE * before) {
@@ -183,7 +187,7 @@ fn whole(errors: &ModelReplayErrors) -> Option<f64> {
 /// Sentence on the evidence for a named effect, from its log evidence ratio.
 pub fn evidence(named: &EffectNaming, log_ratio: f64, asked: bool, trials: &[Trial]) -> String {
     let (id, form, record) = named.term;
-    let effect = names::effect_form(id, form);
+    let effect = names::effect_form_name(id, form);
     let place = record.map_or(String::new(), |number| format!(" in {}", trials[number].title()));
     let odds = match log_ratio / std::f64::consts::LN_10 {
         power if power >= 3.0 => format!("10^{power:.0} times more probable"),
@@ -204,7 +208,7 @@ pub fn evidence(named: &EffectNaming, log_ratio: f64, asked: bool, trials: &[Tri
             named.probability
         );
     }
-    let aliases = named.aliases.iter().map(|(id, form, _)| names::effect_form(id, form));
+    let aliases = named.aliases.iter().map(|(id, form, _)| names::effect_form_name(id, form));
     format!(
         "One of {}{place} is present (probability {:.3}); the records cannot separate them.{forms}{why}",
         listed(&std::iter::once(effect).chain(aliases).collect::<Vec<_>>()),
@@ -219,10 +223,14 @@ pub fn wave_evidence(sd: f64, frequency: f64) -> String {
 
 /// Sentence on the peak of the residual of the record `name`.
 pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
-    let ([from, to], share) = peak.span;
-    let ([low, high], largest) = peak.heading;
-    let line = peak.line.filter(|line| line.share > 0.2).map_or(String::new(), |line| {
-        format!("; {:.0} % of its square has a period of {:.0} s", 100.0 * line.share, line.frequency.recip())
+    let ([from, to], share) = peak.span_and_share;
+    let ([low, high], largest) = peak.heading_range_and_rms;
+    let line = peak.spectral_line.filter(|line| line.mean_square_share > 0.2).map_or(String::new(), |line| {
+        format!(
+            "; {:.0} % of its square has a period of {:.0} s",
+            100.0 * line.mean_square_share,
+            line.frequency.recip()
+        )
     });
     format!(
         "{name}: residual {}° rms; {:.0} % of its square between {from:.0} and {to:.0} s; largest ({}°) at headings \
@@ -238,9 +246,9 @@ pub fn residual_peak_sentence(peak: &ResidualPeak, name: &str) -> String {
 }
 
 /// Clause on a band with less than its nominal coverage.
-pub fn band_sentence(name: &str, coverage: &BandCoverage) -> String {
-    let [low, high] = coverage.interval.map(|end| 100.0 * end);
-    let (inside, total, share) = (coverage.headings_inside, coverage.headings, 100.0 * coverage.share());
+pub fn band_sentence(name: &str, coverage: &ConfidenceBandCoverage) -> String {
+    let [low, high] = coverage.share_ci99.map(|end| 100.0 * end);
+    let (inside, total, share) = (coverage.headings_inside, coverage.heading_count, 100.0 * coverage.share());
     format!("; the 95 % band holds {inside} of {total} headings of {name}, {share:.0} % [{low:.0}, {high:.0}]")
 }
 
@@ -277,14 +285,15 @@ mod tests {
             horizon_rmse_deg: BTreeMap::from([(WINDOW.to_owned(), window[when])]),
             band_coverage_95: None,
             band_width_95_deg: None,
-            with_own_bias_deg: None,
-            with_own_moment_deg: None,
+            heading_rmse_own_bias_deg: None,
+            heading_rmse_own_moment_deg: None,
         };
         RecordReplayErrors { file: String::new(), before: errors(0), after: errors(1), horizons: Vec::new() }
     }
 
     fn headline(effects: &[EffectEntry], error: &ReplayErrorLists) -> String {
-        Headline { verdict: Verdict::Traced, effects, error, disturbance: None, located: &[], has_hulls: false }.text()
+        Headline { verdict: TraceVerdict::Traced, effects, error, disturbance: None, located: &[], has_hulls: false }
+            .text()
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub struct Settings {
     pub min_probability: f64,
     /// Weighting rule of the structures.
     pub rule: WeightingRule,
-    /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all`]).
+    /// Number of monomials among the candidates, as empirical terms ([`crate::empirical::all_monomials`]).
     pub monomial_count: usize,
     /// Required and excluded effects, and effects given as formulas.
     pub selection: Selection,

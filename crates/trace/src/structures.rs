@@ -58,22 +58,24 @@ pub fn weigh_structures(
     rule: WeightingRule,
     base: f64,
 ) -> (FullModel, Structures) {
-    let penalty = 0.5 * (problem.observations() as f64).ln();
+    let penalty = 0.5 * (problem.heading_count() as f64).ln();
     let weighed: Vec<(f64, FullModel, Structures)> = fulls
         .into_par_iter()
         .map(|full| {
             let structures = weigh(problem, &full, candidates, selection, rule);
-            let evidence = structures.all.first().map_or(f64::NEG_INFINITY, |top| top.log_posterior - top.weight.ln());
-            let law = problem.log_normaliser(&full.law) - penalty * full.law.colour.parameter_count() as f64;
+            let evidence =
+                structures.weighed.first().map_or(f64::NEG_INFINITY, |top| top.log_posterior - top.weight.ln());
+            let law =
+                problem.log_normaliser(&full.noise_law) - penalty * full.noise_law.colour.parameter_count() as f64;
             (evidence + law, full, structures)
         })
         .collect();
     let diverges = weighed.iter().any(|(_, full, structures)| {
-        full.law.is_random_moment() && structures.ship_mean_square() > MAX_RANDOM_RATIO * MAX_RANDOM_RATIO * base
+        full.noise_law.is_random_moment() && structures.ship_mean_square() > MAX_RANDOM_RATIO * MAX_RANDOM_RATIO * base
     });
     let is_physical = |(_, full, structures): &(f64, FullModel, Structures)| {
         let max_ratio = if diverges { MAX_PHYSICAL_RATIO_IF_DIVERGENT } else { MAX_PHYSICAL_RATIO };
-        full.law.includes_model_error() && structures.ship_mean_square() / base < max_ratio * max_ratio
+        full.noise_law.includes_model_error() && structures.ship_mean_square() / base < max_ratio * max_ratio
     };
     let physical = weighed.iter().any(is_physical);
     let mut kept: Vec<(f64, FullModel, Structures)> =
@@ -106,7 +108,7 @@ fn weigh(
 ) -> Structures {
     let mut search = StructureSearch {
         problem,
-        whitening: problem.whitening(&full.law),
+        whitening: problem.whitening(&full.noise_law),
         full,
         variants: candidates.iter().filter(|term| is_alternative(term.effect.as_ref())).collect(),
         selection,
@@ -189,7 +191,7 @@ impl StructureSearch<'_> {
 
     /// Stores fits; of several fits of one structure, the fit with the maximum posterior density.
     fn store(&mut self, fits: Vec<StructureFit>) {
-        let objective = |fit: &StructureFit| fit.misfit + fit.penalty;
+        let objective = |fit: &StructureFit| fit.misfit + fit.prior_penalty;
         for fit in fits {
             let name = names(&fit.structure);
             if self.evaluated.get(&name).is_none_or(|stored| objective(&fit) <= objective(&stored.fit)) {
@@ -280,10 +282,10 @@ impl StructureSearch<'_> {
     fn log_posterior(&self, fit: &StructureFit) -> f64 {
         let odds: f64 = fit.structure.terms.iter().map(|term| self.odds(term, 0.0)).sum();
         odds + match self.rule {
-            WeightingRule::Posterior => fit.evidence,
+            WeightingRule::Posterior => fit.log_evidence,
             WeightingRule::Bic => {
                 let free = fit.structure.entries().iter().filter(|entry| entry.prior.is_fitted()).count() as f64;
-                -0.5 * (fit.misfit + free * (self.problem.observations() as f64).ln())
+                -0.5 * (fit.misfit + free * (self.problem.heading_count() as f64).ln())
             }
         }
     }
@@ -342,6 +344,6 @@ impl StructureSearch<'_> {
                 *probabilities.entry(term.name()).or_default() += weighed.weight;
             }
         }
-        Structures { all, probabilities, visibility, evidence, other_law_structures: Vec::new() }
+        Structures { weighed: all, probabilities, visibility, evidence, other_law_structures: Vec::new() }
     }
 }

@@ -84,7 +84,7 @@ pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
 pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
     let origin = RecordOrigin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
-    Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
+    Trial::new("made up", origin, Columns { time, channels, unknown_columns: Vec::new() }).expect("a valid record")
 }
 
 /// Record with rows one second apart, its heading plus the response of the base to a moment (rad of rudder) over time

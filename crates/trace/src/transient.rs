@@ -4,7 +4,7 @@
 
 use estimation::column::dot;
 use nalgebra::{Cholesky, DVector, Dyn};
-use ship::first_order::Transition;
+use ship::first_order::FirstOrderTransition;
 
 use crate::fit::{FittedRecords, StructureFit, normal_equations};
 use crate::linear::Linearisation;
@@ -46,7 +46,7 @@ fn place(
     let record = &problem.records[number];
     let block = linear.blocks[number].whitened(number, whitening);
     let (a, b) = (fit.theta[0], fit.theta[1]);
-    let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+    let times: Vec<f64> = record.observed_rows.iter().map(|&row| record.time[row]).collect();
     let (start, duration) = (record.time[0], record.duration());
     let lasts = term.priors.len() == 2;
     let boxes: Vec<[f64; 2]> = match lasts {
@@ -81,11 +81,11 @@ fn place(
             }
         }
     }
-    let inside = |(value, prior): (f64, &ship::effects::Prior)| value.clamp(prior.lowest, prior.highest);
+    let inside = |(value, prior): (f64, &ship::effects::ParameterPrior)| value.clamp(prior.lowest, prior.highest);
     best.map(|(_, place)| place.into_iter().zip(&term.priors).map(inside).collect())
 }
 
 /// Heading (rad) of a first-order ship after a unit yaw acceleration (1 rad/s²) for t seconds.
 fn step_response(inverse_time: f64, t: f64) -> f64 {
-    if t > 0.0 { Transition::new(inverse_time, t).phi2 } else { 0.0 }
+    if t > 0.0 { FirstOrderTransition::new(inverse_time, t).phi2 } else { 0.0 }
 }

@@ -1,6 +1,6 @@
 //! Detection of narrow-band waves in the heading: likelihood of the residual over frequency, damping and size.
 
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 
 use crate::fit::FittedRecords;
 use crate::noise::NoiseColour;
@@ -26,25 +26,25 @@ const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// Waves of maximum likelihood in addition to the correlated noise of a law; `None` if the rows are too far apart, if
 /// waves do not increase the likelihood, or if they have the maximum damping or less than the minimum share.
-pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
+pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBandProcess> {
     let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let evaluate = |colour: &NoiseColour| {
         let whitening = problem.whitening(&NoiseLaw { colour: *colour, ..NoiseLaw::white(residual.len(), 1.0) });
         let rss = whitening.misfit(residual);
         let log_variance: f64 = whitening.whiteners.iter().map(|whitener| whitener.log_determinant).sum();
-        let n = problem.observations() as f64;
+        let n = problem.heading_count() as f64;
         (n * (rss / n).ln() + log_variance, rss)
     };
-    let value = |waves: NarrowBand| evaluate(&NoiseColour { waves: Some(waves), ..*beside }).0;
+    let value = |waves: NarrowBandProcess| evaluate(&NoiseColour { waves: Some(waves), ..*beside }).0;
     let slowest = MIN_FREQUENCY_RATIO * problem.records.iter().map(fundamental).fold(0.0, f64::max);
     let spacing = problem.records.iter().map(|record| record.spacing).fold(0.0, f64::max);
     let fastest = 0.8 * std::f64::consts::PI / spacing;
     if slowest >= fastest {
         return None;
     }
-    let mut best: Option<(f64, NarrowBand)> = None;
-    let consider = |waves: NarrowBand, best: &mut Option<(f64, NarrowBand)>| {
+    let mut best: Option<(f64, NarrowBandProcess)> = None;
+    let consider = |waves: NarrowBandProcess, best: &mut Option<(f64, NarrowBandProcess)>| {
         let deviance = value(waves);
         if best.as_ref().is_none_or(|(lowest, _)| deviance < *lowest) {
             *best = Some((deviance, waves));
@@ -54,7 +54,7 @@ pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &Nois
         let frequency = slowest * (fastest / slowest).powf(k as f64 / (FREQUENCIES - 1) as f64);
         for damping in DAMPINGS {
             for sd in STRENGTHS {
-                consider(NarrowBand { sd, frequency, damping }, &mut best);
+                consider(NarrowBandProcess { sd, frequency, damping }, &mut best);
             }
         }
     }
@@ -64,12 +64,15 @@ pub fn estimate_waves(problem: &FittedRecords, residual: &[Vec<f64>], law: &Nois
         let (_, centre) = best?;
         for step in [factor, 1.0 / factor] {
             let frequency = (centre.frequency * step).clamp(slowest, fastest);
-            consider(NarrowBand { frequency, ..centre }, &mut best);
+            consider(NarrowBandProcess { frequency, ..centre }, &mut best);
         }
         let (_, centre) = best?;
         for step in [1.6, 1.0 / 1.6, 1.2, 1.0 / 1.2] {
-            consider(NarrowBand { sd: centre.sd * step, ..centre }, &mut best);
-            consider(NarrowBand { damping: (centre.damping * step).clamp(0.005, MAX_DAMPING), ..centre }, &mut best);
+            consider(NarrowBandProcess { sd: centre.sd * step, ..centre }, &mut best);
+            consider(
+                NarrowBandProcess { damping: (centre.damping * step).clamp(0.005, MAX_DAMPING), ..centre },
+                &mut best,
+            );
         }
         factor = factor.sqrt();
     }

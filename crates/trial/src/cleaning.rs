@@ -304,7 +304,7 @@ mod tests {
             (Channel::Rudder, time.iter().map(|&t| rudder(t)).collect()),
             (Channel::Heading, time.iter().map(|&t| heading(t)).collect()),
         ];
-        Columns { time, channels: channels.into(), unknown: Vec::new() }
+        Columns { time, channels: channels.into(), unknown_columns: Vec::new() }
     }
 
     pub(super) fn with(channel: Channel, change: impl Fn(usize, &[f64]) -> f64) -> Columns {

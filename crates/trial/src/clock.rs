@@ -31,7 +31,7 @@ impl Date {
 
 /// Date, time of day or both, as a log states them, with the time zone if stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stamp {
+pub struct TimeStamp {
     /// `None` for a time of day alone.
     date: Option<Date>,
     /// Second of the day; `None` for a date alone.
@@ -200,7 +200,7 @@ fn read_zone(scan: &mut Scan) -> Option<i32> {
     (minutes <= 15 * 60).then_some(sign * minutes as i32)
 }
 
-impl Stamp {
+impl TimeStamp {
     /// Stamp of a text: ISO 8601 (`2026-11-20T14:03:05.2Z`, a blank for the T, `/` for the hyphens), `20.11.2026
     /// 14:03:05`, `11/20/2026 2:03:05 PM`, `20-Nov-2026 14:03:05`, or a date or a time of day alone.
     ///
@@ -280,7 +280,7 @@ impl Clock {
 
     /// Time (s) of the record at a stamp; a time of day alone means the first such time at or after time 0. `None`
     /// without a time of day, for an ambiguous date, or for a date on a clock without one.
-    pub fn record_time(&self, stamp: &Stamp) -> Option<f64> {
+    pub fn record_time(&self, stamp: &TimeStamp) -> Option<f64> {
         let shift =
             self.utc_offset_min.zip(stamp.utc_offset_min).map_or(0.0, |(clock, stamp)| f64::from(clock - stamp) * 60.0);
         let second = stamp.second? + shift - self.second;
@@ -305,7 +305,7 @@ pub enum StampFault {
 #[derive(Debug, Clone, Default)]
 pub struct StampConverter {
     /// First stamp; `None` before it.
-    first: Option<Stamp>,
+    first: Option<TimeStamp>,
     /// Last date, and its days after the first date; `None` before a date was read.
     last: Option<(Date, i64)>,
     /// Time of day of the last stamp without a date, s.
@@ -322,7 +322,7 @@ impl StampConverter {
     /// A time of day that decreases by more than half a day has passed midnight. A date such as 03/04/2026 is kept in
     /// both readings until a date determines the month: by a number above 12, or by a step of a day to the next date.
     /// Fails with [`StampFault`] for a stamp without a time of day, and for a date whose month is not determined.
-    pub fn seconds(&mut self, stamp: Stamp) -> Result<f64, StampFault> {
+    pub fn seconds(&mut self, stamp: TimeStamp) -> Result<f64, StampFault> {
         let second = stamp.second.ok_or(StampFault::NoTime)?;
         let first = *self.first.get_or_insert(stamp);
         let day = match (stamp.date, first.date) {

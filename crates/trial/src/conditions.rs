@@ -107,7 +107,7 @@ pub struct DeclaredConditions {
 /// Deviation of a trial from the conditions of MSC/Circ.1053 (2002), 2.2, or a condition that is not declared.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
-pub enum Shortcoming {
+pub enum ConditionShortcoming {
     /// Undeclared condition.
     #[error("{condition} is not declared; required: {requirement}")]
     Undeclared { condition: &'static str, requirement: &'static str },
@@ -194,7 +194,7 @@ impl DeclaredConditions {
             ("draught-m", self.draught, self.beam, "a draught below beam-m"),
             ("full-load-draught-m", self.full_load_draught, self.beam, "a draught below beam-m"),
         ];
-        if self.draught.is_some_and(|draught| !self.trial.admits(draught)) {
+        if self.draught.is_some_and(|draught| !self.trial.admits_draught(draught)) {
             return Some(("draught-m", "a mean draught between those fore and aft of [trial], or nothing"));
         }
         let broken = rules.into_iter().find(|(_, x, limit, _)| x.zip(*limit).is_some_and(|(x, limit)| x >= limit));
@@ -226,30 +226,30 @@ impl DeclaredConditions {
 
     /// Deviations from the conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared. Current and
     /// speed are not checked.
-    pub fn shortcomings(&self) -> Vec<Shortcoming> {
-        let undeclared = |condition, requirement| Some(Shortcoming::Undeclared { condition, requirement });
+    pub fn shortcomings(&self) -> Vec<ConditionShortcoming> {
+        let undeclared = |condition, requirement| Some(ConditionShortcoming::Undeclared { condition, requirement });
         let depth = match self.depth_in_draughts() {
             None => undeclared("the water depth in draughts", "more than 4 mean draughts"),
-            Some(draughts) => (draughts <= MIN_DEPTH_DRAUGHTS).then_some(Shortcoming::Depth { draughts }),
+            Some(draughts) => (draughts <= MIN_DEPTH_DRAUGHTS).then_some(ConditionShortcoming::Depth { draughts }),
         };
         let calm = self.weather.map(|_| 0);
         let wind = match self.wind_beaufort.or(calm) {
             None => undeclared("the wind", "at most Beaufort 5"),
-            Some(beaufort) => (beaufort > MAX_BEAUFORT).then_some(Shortcoming::Wind { beaufort }),
+            Some(beaufort) => (beaufort > MAX_BEAUFORT).then_some(ConditionShortcoming::Wind { beaufort }),
         };
         let sea = match self.sea_state.or(calm) {
             None => undeclared("the sea state", "at most sea state 4"),
-            Some(state) => (state > MAX_SEA_STATE).then_some(Shortcoming::Sea { state }),
+            Some(state) => (state > MAX_SEA_STATE).then_some(ConditionShortcoming::Sea { state }),
         };
         let draught = self.draught_share();
         let load = match (self.loading(), draught) {
             (None, _) => undeclared("the loading", "full load with a tolerance of 5 % in draught"),
-            (Some(Loading::Partial), _) => Some(Shortcoming::Load { draught }),
+            (Some(Loading::Partial), _) => Some(ConditionShortcoming::Load { draught }),
             (Some(Loading::Full), share) => share
                 .filter(|share| (share - 1.0).abs() > MAX_DRAUGHT_DEVIATION_SHARE)
-                .map(|draught| Shortcoming::Contradiction { draught }),
+                .map(|draught| ConditionShortcoming::Contradiction { draught }),
         };
-        let trim = self.trim.filter(|trim| *trim != 0.0).map(|trim| Shortcoming::Trim { trim });
+        let trim = self.trim.filter(|trim| *trim != 0.0).map(|trim| ConditionShortcoming::Trim { trim });
         [depth, wind, sea, load, trim].into_iter().flatten().collect()
     }
 }

@@ -82,19 +82,19 @@ impl Read for LimitedReader<'_> {
 }
 
 /// Name that means standard input.
-pub const STDIN: &str = "-";
+pub const STDIN_PATH: &str = "-";
 
 /// Path of a file for names and messages; `stdin` for standard input.
 pub fn display_path(path: &Path) -> &Path {
-    if path == Path::new(STDIN) { Path::new("stdin") } else { path }
+    if path == Path::new(STDIN_PATH) { Path::new("stdin") } else { path }
 }
 
-/// Opens a file, a pipe or standard input ([`STDIN`]).
+/// Opens a file, a pipe or standard input ([`STDIN_PATH`]).
 ///
 /// Fails for an absent file, a folder, a device or socket, and a file larger than its kind allows. If the size is
 /// unknown, reading fails instead, with an error that `FileError::from` converts back to a [`FileError`].
 pub fn open(path: &Path, kind: FileKind) -> Result<LimitedReader<'static>, FileError> {
-    if path == Path::new(STDIN) {
+    if path == Path::new(STDIN_PATH) {
         return Ok(LimitedReader::new(Box::new(io::stdin().lock()), kind, None));
     }
     let about = fs::metadata(path)?;

@@ -107,7 +107,7 @@ impl ImoCriterion {
 ///
 /// The distance of the initial turning is the integral of the recorded speed, or V t_a if the speed was not
 /// recorded; the latter is slightly long, because a ship loses speed as it begins to turn.
-pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<ImoCriterion> {
+pub fn imo_criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<ImoCriterion> {
     let is_pair =
         |angle_deg: f64| zigzag.nominal_angles.is_some_and(|pair: NominalAngles| pair.is_deg(angle_deg, angle_deg));
     let is_straight = zigzag.straight_yaw_rate().is_some();
@@ -157,7 +157,7 @@ mod tests {
 
     fn table(delta_deg: f64, psi_deg: f64) -> Vec<ImoCriterion> {
         let (time, heading, rudder) = Plant::new(delta_deg, psi_deg, 2.5).record(300.0, 1.0);
-        criteria(&ZigZag::from_trial(&trial(time, heading, rudder)).expect("a zig-zag"), YUKUN)
+        imo_criteria(&ZigZag::from_trial(&trial(time, heading, rudder)).expect("a zig-zag"), YUKUN)
     }
 
     fn values(table: &[ImoCriterion]) -> Vec<Option<f64>> {
@@ -193,7 +193,7 @@ mod tests {
         let turned = time.iter().zip(heading).map(|(t, psi)| psi + 0.05 * (1.0 - (-(t - 40.0) / 10.0).exp().min(5.0)));
         let zigzag = ZigZag::from_trial(&trial(time.clone(), turned.collect(), rudder)).expect("a zig-zag");
         assert!(!zigzag.lacks_first_execute() && zigzag.straight_yaw_rate().is_none());
-        let measured = values(&criteria(&zigzag, YUKUN));
+        let measured = values(&imo_criteria(&zigzag, YUKUN));
         assert!(measured[1].is_some(), "{measured:?}");
         assert_eq!([measured[0], measured[3]], [None, None]);
     }

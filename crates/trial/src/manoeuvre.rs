@@ -127,7 +127,7 @@ pub struct OrderStep {
     /// Condition that triggers the order or the end.
     pub trigger: Trigger,
     /// Ordered rudder, rad; `None` for the end of the manoeuvre.
-    pub order: Option<f64>,
+    pub ordered_rudder: Option<f64>,
     /// Scenario key of the trigger.
     pub key: &'static str,
 }
@@ -176,7 +176,7 @@ impl Manoeuvre {
     }
 
     /// Step that follows a number of orders, 0 for the first step, which is given at once.
-    pub fn step(&self, orders: usize) -> OrderStep {
+    pub fn order_step(&self, orders: usize) -> OrderStep {
         use Trigger::{Deviation, Never, Time};
         let (trigger, order, key) = match (self, orders) {
             (Self::ZigZag { executes: Some(executes), .. }, _) if orders >= *executes => {
@@ -218,15 +218,15 @@ impl Manoeuvre {
             (Self::Replay { .. }, _) => (Time(self.length_of_record()), None, "manoeuvre.replay.file"),
             (Self::Spiral { .. }, _) => (Never, None, "manoeuvre"),
         };
-        OrderStep { trigger, order, key }
+        OrderStep { trigger, ordered_rudder: order, key }
     }
 
     /// Steps in order, up to the end of the manoeuvre; endless for a zig-zag without a number of executes.
-    pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
+    pub fn order_steps(&self) -> impl Iterator<Item = OrderStep> {
         let mut ended = false;
         (0..)
-            .map(|orders| self.step(orders))
-            .take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
+            .map(|orders| self.order_step(orders))
+            .take_while(move |step| !std::mem::replace(&mut ended, step.ordered_rudder.is_none()))
     }
 
     /// Time from the first execute to the end, s; infinite if a heading or the end of the recording determines it.
@@ -235,7 +235,7 @@ impl Manoeuvre {
             return *duration;
         }
         let mut total = 0.0;
-        for step in self.steps() {
+        for step in self.order_steps() {
             match step.trigger {
                 Trigger::Time(time) => total += time,
                 Trigger::Deviation { .. } | Trigger::Never => return f64::INFINITY,
@@ -248,7 +248,7 @@ impl Manoeuvre {
     pub fn max_executes(&self) -> usize {
         match self {
             Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
-            _ => self.steps().filter(|step| step.order.is_some()).count(),
+            _ => self.order_steps().filter(|step| step.ordered_rudder.is_some()).count(),
         }
     }
 

@@ -87,12 +87,12 @@ const NAMES: [(ColumnMeaning, &str); 20] = {
 };
 
 /// Every customary column name, normalised, with its meaning.
-pub fn names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
+pub fn known_column_names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
     NAMES.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
 }
 
 /// Every notation of a unit, in lower case without blanks, with its unit.
-pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
+pub fn known_unit_names() -> impl Iterator<Item = (&'static str, Unit)> {
     UNITS.iter().flat_map(|&(unit, .., names)| names.split(", ").map(move |name| (name, unit)))
 }
 
@@ -108,7 +108,7 @@ pub fn parse_unit(text: &str) -> Option<Unit> {
         .filter(|c| !c.is_whitespace() && !matches!(c, '.' | '^' | '·' | '*' | '⁻'))
         .map(|c| if c == '¹' { '1' } else { c })
         .collect();
-    units().find(|(name, _)| *name == plain).map(|(_, unit)| unit)
+    known_unit_names().find(|(name, _)| *name == plain).map(|(_, unit)| unit)
 }
 
 /// Normalised name: small letters, single blanks in place of all other characters, `RudderAngle` as two words.
@@ -131,7 +131,7 @@ fn normalised(name: &str) -> String {
 
 /// Meaning of a normalised name without a unit.
 fn unitless_meaning(normalised: &str) -> Option<ColumnMeaning> {
-    let customary = names().find(|(name, _)| *name == normalised).map(|(_, meaning)| meaning);
+    let customary = known_column_names().find(|(name, _)| *name == normalised).map(|(_, meaning)| meaning);
     // `wind true speed` is the quantity `wind_true_speed` of a column name.
     customary.or_else(|| {
         let channel = Channel::ALL.into_iter().find(|channel| channel.quantity().replace('_', " ") == normalised)?;
@@ -165,7 +165,7 @@ pub fn column_meaning(name: &str) -> Option<ColumnMeaning> {
         let suffix = name[at + usize::from(!matches!(mark, '[' | '(' | '{')) * mark.len_utf8()..].trim();
         let suffix = suffix.strip_prefix("in ").unwrap_or(suffix);
         if let (Some(meaning), Some(unit)) = (unitless_meaning(&normalised(&name[..at])), suffix_unit(suffix)) {
-            return with_unit(meaning, unit);
+            return meaning_with_unit(meaning, unit);
         }
     }
     unitless_meaning(&normalised(name))
@@ -184,7 +184,7 @@ fn channel_unit(channel: Channel, unit: Unit) -> Option<Unit> {
 }
 
 /// Meaning of a column with its unit replaced; `None` if the quantity cannot have the unit.
-pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
+pub fn meaning_with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => {
             time_column_unit(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit)))
@@ -254,13 +254,13 @@ mod tests {
 
     #[test]
     fn every_name_is_there_once_and_reads_as_itself() {
-        for (place, (name, expected)) in names().enumerate() {
-            assert!(names().take(place).all(|(other, _)| other != name), "{name}");
+        for (place, (name, expected)) in known_column_names().enumerate() {
+            assert!(known_column_names().take(place).all(|(other, _)| other != name), "{name}");
             assert_eq!(column_meaning(name), Some(expected), "{name}");
             assert_eq!(normalised(name), name);
         }
-        for (place, (name, expected)) in units().enumerate() {
-            assert!(units().take(place).all(|(other, _)| other != name), "{name}");
+        for (place, (name, expected)) in known_unit_names().enumerate() {
+            assert!(known_unit_names().take(place).all(|(other, _)| other != name), "{name}");
             assert_eq!(parse_unit(&format!("[{name}]")), Some(expected), "{name}");
         }
     }

@@ -152,7 +152,7 @@ const WARNING_SHARE: f64 = 0.4;
 /// rate contradict each other. The sign of the rudder is the sign of b
 /// = K/T in ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle of
 /// ∫δ dψ.
-pub fn check(trial: &Trial) -> Result<Vec<Warning>, Implausibility> {
+pub fn check_plausibility(trial: &Trial) -> Result<Vec<Warning>, Implausibility> {
     let mut warnings = Vec::from_iter(ranges(trial)?);
     two_inputs(trial)?;
     let turns = range_deg(trial.heading()) > MAX_SWING_DEG;

@@ -13,11 +13,11 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
-use crate::conditions::{DeclaredConditions, DeclaredWeather, MAX_READING_INTERVAL_S, Shortcoming};
+use crate::conditions::{ConditionShortcoming, DeclaredConditions, DeclaredWeather, MAX_READING_INTERVAL_S};
 use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
-pub use corners::Corner;
+pub use corners::RudderCorner;
 
 /// Origin of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +59,7 @@ pub struct Columns {
     /// Other channels, each as long as `time`.
     pub channels: BTreeMap<Channel, Vec<f64>>,
     /// Name and values of each column with an unknown name, unchanged.
-    pub unknown: Vec<(String, Vec<f64>)>,
+    pub unknown_columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Columns {
@@ -71,7 +71,7 @@ impl Columns {
         };
         retain_rows(&mut self.time);
         self.channels.values_mut().for_each(retain_rows);
-        self.unknown.iter_mut().for_each(|(_, values)| retain_rows(values));
+        self.unknown_columns.iter_mut().for_each(|(_, values)| retain_rows(values));
     }
 }
 
@@ -160,7 +160,7 @@ impl Trial {
     /// Fails if the rudder, or both heading and yaw rate, are absent; if columns differ in length; if time does
     /// not increase; or if fewer than [`MIN_ROWS`](Self::MIN_ROWS) rows contain a heading.
     pub fn new(name: impl Into<String>, origin: RecordOrigin, columns: Columns) -> Result<Self, TrialError> {
-        let Columns { time, mut channels, unknown } = columns;
+        let Columns { time, mut channels, unknown_columns: unknown } = columns;
         for (&channel, values) in &channels {
             if values.len() != time.len() {
                 return Err(TrialError::Length { channel, rows: values.len(), expected: time.len() });
@@ -228,7 +228,7 @@ impl Trial {
 
     /// Name of the record for display.
     pub fn title(&self) -> String {
-        document::names::record(&self.name)
+        document::names::record_name(&self.name)
     }
 
     /// Origin of the record.
@@ -290,7 +290,7 @@ impl Trial {
 
     /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; empty unless it rests
     /// or moves at a constant rate.
-    pub fn rudder_corners(&self) -> &[Corner] {
+    pub fn rudder_corners(&self) -> &[RudderCorner] {
         &self.rudder.corners
     }
 
@@ -348,10 +348,10 @@ impl Trial {
     }
 
     /// Deviations from the trial conditions of MSC/Circ.1053 (2002), 2.2, and conditions that are not declared.
-    pub fn shortcomings(&self) -> Vec<Shortcoming> {
+    pub fn shortcomings(&self) -> Vec<ConditionShortcoming> {
         let mut shortcomings = self.conditions.shortcomings();
         let seconds = self.sampling_period();
-        shortcomings.extend((seconds > MAX_READING_INTERVAL_S).then_some(Shortcoming::Interval { seconds }));
+        shortcomings.extend((seconds > MAX_READING_INTERVAL_S).then_some(ConditionShortcoming::Interval { seconds }));
         shortcomings
     }
 
@@ -397,7 +397,7 @@ mod tests {
             (Channel::North, values_of(|t| 1.2 * t)),
         ];
         let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
-        let columns = Columns { time: time.clone(), channels: channels.into(), unknown: Vec::new() };
+        let columns = Columns { time: time.clone(), channels: channels.into(), unknown_columns: Vec::new() };
         let trial = Trial::new("run", origin, columns).expect("a record");
         let (model, ship) = (Particulars { length: 7.0, speed: 1.2 }, Particulars { length: 320.0, speed: 8.0 });
         assert!(trial.scaled_to(ship).is_none());

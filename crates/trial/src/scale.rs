@@ -4,7 +4,7 @@
 //! Source: Froude (1868) for V ~ √L; the prime system for any speed.
 
 use document::Quantity;
-use document::scales::Scaling;
+use document::scales::ScalingVerdict;
 use ship::Particulars;
 use thiserror::Error;
 
@@ -30,14 +30,14 @@ pub enum ScaleError {
 
 /// Scales of records, in the order of their occurrence.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scales {
+pub struct ShipScales {
     /// Length and speed of the first record of every length.
     pub particulars: Vec<Particulars>,
     /// Index of the scale of every record.
-    pub indices: Vec<usize>,
+    pub scale_indices: Vec<usize>,
 }
 
-impl Scales {
+impl ShipScales {
     /// Scales of records; `None` if the declared scales do not differ.
     ///
     /// Fails if records differ in scale and a record does not declare its scale.
@@ -68,7 +68,7 @@ impl Scales {
                 _ => {}
             }
         }
-        Ok(Some(Self { particulars, indices: indices.into_iter().flatten().collect() }))
+        Ok(Some(Self { particulars, scale_indices: indices.into_iter().flatten().collect() }))
     }
 
     /// Records converted to the scale of the first, each from its declared length and speed; without these, unchanged.
@@ -79,8 +79,9 @@ impl Scales {
 
     /// Length and speed of every scale, with the indices of its records among the first `count`.
     pub fn groups(&self, count: usize) -> Vec<(Particulars, Vec<usize>)> {
-        let records =
-            |scale: usize| (0..count.min(self.indices.len())).filter(|&record| self.indices[record] == scale).collect();
+        let records = |scale: usize| {
+            (0..count.min(self.scale_indices.len())).filter(|&record| self.scale_indices[record] == scale).collect()
+        };
         let all = self.particulars.iter().enumerate().map(|(scale, particulars)| (*particulars, records(scale)));
         all.filter(|(_, records): &(_, Vec<usize>)| !records.is_empty()).collect()
     }
@@ -98,7 +99,7 @@ const ROUNDING: f64 = 1e-12;
 /// Comparison of independent dimensionless estimates at different scales: the difference of two, x₂ − x₁ in units of
 /// √(s₁² + s₂²), with the maximum magnitude, and its verdict. The difference is `None` if fewer than two estimates have
 /// a standard deviation.
-pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
+pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, ScalingVerdict) {
     let with_sd: Vec<(f64, f64)> = estimates
         .iter()
         .filter_map(|estimate| Some((estimate.value, estimate.sd?)))
@@ -119,9 +120,9 @@ pub fn compare_scales(estimates: &[Quantity]) -> (Option<f64>, Scaling) {
         }
     }
     let word = match largest {
-        Some(difference) if difference.abs() > SIGNIFICANT_SDS => Scaling::DoesNotScale,
-        Some(_) if is_resolved => Scaling::Scales,
-        _ => Scaling::Undecided,
+        Some(difference) if difference.abs() > SIGNIFICANT_SDS => ScalingVerdict::DoesNotScale,
+        Some(_) if is_resolved => ScalingVerdict::Scales,
+        _ => ScalingVerdict::Undecided,
     };
     (largest, word)
 }
@@ -136,7 +137,8 @@ mod tests {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let channels = [(Channel::Rudder, vec![0.1; 20]), (Channel::Heading, time.clone())].into();
         let origin = RecordOrigin::Measured { file: name.into(), sha256: String::new() };
-        let trial = Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a record");
+        let trial =
+            Trial::new(name, origin, Columns { time, channels, unknown_columns: Vec::new() }).expect("a record");
         match scale {
             Some((length, speed)) => trial.with_particulars(Particulars { length, speed }),
             None => trial,
@@ -147,35 +149,38 @@ mod tests {
     fn records_of_about_one_length_are_of_one_scale() {
         let [a, b] = [record("a", Some((7.0, 1.18))), record("b", Some((320.0, 7.97)))];
         let [c, unknown] = [record("c", Some((7.05, 0.9))), record("u", None)];
-        assert_eq!(Scales::from_trials([&a, &c].into_iter()), Ok(None));
-        assert_eq!(Scales::from_trials([&a, &unknown].into_iter()), Ok(None));
-        let scales = Scales::from_trials([&a, &b, &c].into_iter()).expect("declared").expect("two");
-        assert_eq!((scales.indices.as_slice(), scales.particulars.len()), ([0, 1, 0].as_slice(), 2));
+        assert_eq!(ShipScales::from_trials([&a, &c].into_iter()), Ok(None));
+        assert_eq!(ShipScales::from_trials([&a, &unknown].into_iter()), Ok(None));
+        let scales = ShipScales::from_trials([&a, &b, &c].into_iter()).expect("declared").expect("two");
+        assert_eq!((scales.scale_indices.as_slice(), scales.particulars.len()), ([0, 1, 0].as_slice(), 2));
         let groups: Vec<Vec<usize>> = scales.groups(3).into_iter().map(|(_, records)| records).collect();
         assert_eq!(groups, [vec![0, 2], vec![1]]);
         assert_eq!(scales.groups(1).len(), 1);
         let together = scales.to_first_scale(vec![a.clone(), b.clone(), c]);
         assert!((together[1].duration() / b.duration() - 7.0 / 1.18 / (320.0 / 7.97)).abs() < 1e-12);
         assert!((together[2].duration() / a.duration() - 7.0 / 1.18 / (7.05 / 0.9)).abs() < 1e-12);
-        let error = Scales::from_trials([&a, &b, &unknown].into_iter()).expect_err("no scale").to_string();
+        let error = ShipScales::from_trials([&a, &b, &unknown].into_iter()).expect_err("no scale").to_string();
         assert!(error.contains("length and speed of u are not declared"), "{error}");
         let still = record("still", Some((7.0, 0.0)));
-        assert!(matches!(Scales::from_trials([&b, &still].into_iter()), Err(ScaleError::NotPositive { .. })));
+        assert!(matches!(ShipScales::from_trials([&b, &still].into_iter()), Err(ScaleError::NotPositive { .. })));
     }
 
     #[test]
     fn a_difference_is_judged_by_its_error() {
         let of = |value: f64, sd: f64| Quantity::new(value, Some(sd));
         let (difference, word) = compare_scales(&[of(1.0, 0.03), of(1.05, 0.04)]);
-        assert!(word == Scaling::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
-        assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, Scaling::DoesNotScale);
-        assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, Scaling::Undecided);
-        assert_eq!(compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]), (None, Scaling::Undecided));
+        assert!(word == ScalingVerdict::Scales && difference.is_some_and(|d| (d - 1.0).abs() < 1e-9), "{difference:?}");
+        assert_eq!(compare_scales(&[of(1.0, 0.03), of(1.2, 0.04)]).1, ScalingVerdict::DoesNotScale);
+        assert_eq!(compare_scales(&[of(1.0, 0.3), of(1.2, 0.4)]).1, ScalingVerdict::Undecided);
+        assert_eq!(
+            compare_scales(&[of(1.0, 0.3), Quantity::without_uncertainty(2.0)]),
+            (None, ScalingVerdict::Undecided)
+        );
         // An estimate without a standard deviation is ignored, but excludes the verdict that all three agree.
         let three = [of(1.0, 0.01), Quantity::without_uncertainty(1.0), of(1.01, 0.01)];
-        assert_eq!(compare_scales(&three).1, Scaling::Undecided);
+        assert_eq!(compare_scales(&three).1, ScalingVerdict::Undecided);
         let (difference, word) = compare_scales(&[of(1.0, 0.01), of(1.01, 0.01), of(0.9, 0.01)]);
         assert!(difference.is_some_and(|d| (d + 0.11 / 0.01 / 2f64.sqrt()).abs() < 1e-9), "{difference:?}");
-        assert_eq!(word, Scaling::DoesNotScale);
+        assert_eq!(word, ScalingVerdict::DoesNotScale);
     }
 }

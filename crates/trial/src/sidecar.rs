@@ -2,7 +2,7 @@
 //! in [`crate::reader`].
 //!
 //! `NAME.trial.toml` next to `NAME.csv` (or `.dat`, `.txt`, ...) is used automatically; any other sidecar must be
-//! named. [`keys`] lists its keys; none is required.
+//! named. [`sidecar_keys`] lists its keys; none is required.
 
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use crate::record::SensorNoise;
 use crate::sidecar_error::LocatedProblem;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 use crate::sidecar_keys::{CheckKeys, ColumnKeys, PartKeys, RudderKeys, ShipKeys, SidecarKeys, TableKeys};
-pub use crate::sidecar_keys::{SidecarKey, keys, schema};
+pub use crate::sidecar_keys::{SidecarKey, sidecar_keys, sidecar_schema};
 use crate::wording::shortened;
 
 /// Kind of file of a sidecar, at most 1 MiB; usual sidecars have up to a hundred lines.
@@ -66,13 +66,13 @@ pub struct Sidecar {
 
 impl Sidecar {
     /// Path of the sidecar of a table: `NAME.trial.toml` next to `NAME.*`.
-    pub fn beside(table: &Path) -> PathBuf {
+    pub fn path_beside(table: &Path) -> PathBuf {
         table.with_extension("trial.toml")
     }
 
     /// Path of the sidecar of a table; `None` if there is no such file.
     pub fn existing_beside(table: &Path) -> Option<PathBuf> {
-        Some(Self::beside(table)).filter(|beside| beside.is_file())
+        Some(Self::path_beside(table)).filter(|beside| beside.is_file())
     }
 
     /// Path of the sidecar of a table: the given file, or the file of its name in the given folder; else the file next
@@ -188,7 +188,7 @@ fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'st
 /// Checks every value independently.
 fn check_values(text: &str, document: &DeTable) -> Result<(), LocatedProblem> {
     let values: toml::Table = text.parse().map_err(syntax)?;
-    for SidecarKey { key: name, value_kind: kind, .. } in keys() {
+    for SidecarKey { key: name, value_kind: kind, .. } in sidecar_keys() {
         let (table, key) = name.split_once(' ').unwrap_or(("", &name));
         let table = table.trim_matches(['[', ']']);
         let value = if table.is_empty() { values.get(key) } else { values.get(table).and_then(|keys| keys.get(key)) };
@@ -325,7 +325,7 @@ mod tests {
     /// Every listed key is accepted, though a value may contradict others.
     #[test]
     fn every_listed_key_is_known() {
-        for SidecarKey { key, .. } in keys().into_iter().filter(|key| key.key.starts_with('[')) {
+        for SidecarKey { key, .. } in sidecar_keys().into_iter().filter(|key| key.key.starts_with('[')) {
             let (table, name) = key.split_once(' ').expect("a table and a key");
             let text = format!("{table}\n{name} = {{}}\n");
             let error = parse(&text).expect_err("no key is a table").to_string();
@@ -442,8 +442,8 @@ mod tests {
 
     #[test]
     fn the_sidecar_lies_beside_its_table() {
-        assert_eq!(Sidecar::beside(Path::new("a/run.1.csv")), Path::new("a/run.1.trial.toml"));
-        assert_eq!(Sidecar::beside(Path::new("run")), Path::new("run.trial.toml"));
+        assert_eq!(Sidecar::path_beside(Path::new("a/run.1.csv")), Path::new("a/run.1.trial.toml"));
+        assert_eq!(Sidecar::path_beside(Path::new("run")), Path::new("run.trial.toml"));
         let error = Sidecar::load(Path::new("no/such.trial.toml")).expect_err("it is not there");
         assert!(matches!(error.problem, SidecarProblem::File(crate::FileError::NotFound)), "{error}");
     }

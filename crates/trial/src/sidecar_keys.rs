@@ -192,7 +192,7 @@ pub(crate) struct CheckKeys {
 }
 
 /// JSON schema (draft 7) of a sidecar, for completion and checks in editors.
-pub fn schema() -> Schema {
+pub fn sidecar_schema() -> Schema {
     // Inlined tables let `keys` walk from a table to its keys.
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
     let mut schema = settings.into_generator().into_root_schema_for::<SidecarKeys>();
@@ -212,8 +212,8 @@ pub struct SidecarKey {
 }
 
 /// All keys of a sidecar in the order of declaration, and last the mark of a remark, `#`.
-pub fn keys() -> Vec<SidecarKey> {
-    let schema = schema();
+pub fn sidecar_keys() -> Vec<SidecarKey> {
+    let schema = sidecar_schema();
     let properties = |schema: &serde_json::Value| schema["properties"].as_object().cloned().unwrap_or_default();
     let mut keys = Vec::new();
     for (name, entry) in properties(schema.as_value()) {

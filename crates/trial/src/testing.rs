@@ -6,7 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use ship::FirstOrder;
 use ship::angle::from_deg;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 
 use crate::{Channel, Columns, RecordOrigin, Trial};
 
@@ -31,7 +31,7 @@ impl Default for Plant {
 /// Piece from `time` on: the state then, and a rudder that is linear in time.
 struct Piece {
     time: f64,
-    state: State,
+    state: YawState,
     rudder: f64,
     slope: f64,
 }
@@ -69,8 +69,8 @@ impl Plant {
     }
 
     fn pieces(&self, duration: f64) -> Vec<Piece> {
-        let mut pieces = vec![Piece { time: 0.0, state: State::default(), rudder: 0.0, slope: 0.0 }];
-        let (mut time, mut state, mut rudder) = (self.approach, State::default(), 0.0);
+        let mut pieces = vec![Piece { time: 0.0, state: YawState::default(), rudder: 0.0, slope: 0.0 }];
+        let (mut time, mut state, mut rudder) = (self.approach, YawState::default(), 0.0);
         let mut side = 1.0;
         while time <= duration {
             let target = side * self.delta;
@@ -101,16 +101,17 @@ impl Plant {
     }
 }
 
-fn advance(state: State, rudder: f64, slope: f64, time: f64) -> State {
+fn advance(state: YawState, rudder: f64, slope: f64, time: f64) -> YawState {
     let ship = FirstOrder::from_indices(0.1, 16.3, 0.0);
-    Transition::new(ship.inverse_T, time).advance(state, ship.K_over_T * rudder, ship.K_over_T * slope)
+    FirstOrderTransition::new(ship.inverse_T, time).advance(state, ship.K_over_T * rudder, ship.K_over_T * slope)
 }
 
 /// A record from its columns.
 pub(crate) fn trial(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     let origin = RecordOrigin::Simulated { scenario: "first order".into(), cell: 0, replicate: 0 };
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into_iter().collect();
-    Trial::new("zig-zag", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns are consistent")
+    Trial::new("zig-zag", origin, Columns { time, channels, unknown_columns: Vec::new() })
+        .expect("columns are consistent")
 }
 
 /// Generator of standard normal deviates.

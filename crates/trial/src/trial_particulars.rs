@@ -47,7 +47,7 @@ impl TrialParticulars {
     }
 
     /// `true` if a mean draught (m) is between the draughts fore and aft, or if either is undeclared.
-    pub fn admits(&self, draught: f64) -> bool {
+    pub fn admits_draught(&self, draught: f64) -> bool {
         self.draughts().is_none_or(|[fore, aft]| (fore.min(aft)..=fore.max(aft)).contains(&draught))
     }
 

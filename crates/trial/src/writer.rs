@@ -103,7 +103,8 @@ mod tests {
         }
         let unknown = vec![("thrust, \"N\"".to_owned(), time.iter().map(|t| t * 1e-7).collect())];
         let origin = RecordOrigin::Simulated { scenario: "writer".to_owned(), cell: 0, replicate: 0 };
-        Trial::new("writer", origin, Columns { time, channels, unknown }).expect("the columns are complete")
+        Trial::new("writer", origin, Columns { time, channels, unknown_columns: unknown })
+            .expect("the columns are complete")
     }
 
     #[test]

@@ -18,7 +18,7 @@ use ship::{EffectReal, MeasuredChannels, Tangent};
 use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
-use trial::clock::{Stamp, StampConverter};
+use trial::clock::{StampConverter, TimeStamp};
 use trial::reader::{self, ReadRecord};
 use trial::sidecar::Sidecar;
 use trial::{Channel, Trial};
@@ -101,7 +101,7 @@ pub fn stamp(data: &[u8]) -> bool {
     let mut stamps = StampConverter::default();
     let mut read = false;
     for line in text.lines() {
-        let Some(stamp) = Stamp::parse(line) else { continue };
+        let Some(stamp) = TimeStamp::parse(line) else { continue };
         assert!(stamp.has_time() || stamp.has_date(), "a stamp of nothing");
         let Ok(seconds) = stamps.seconds(stamp) else { continue };
         assert!(seconds.is_finite(), "a time that is not finite");
@@ -118,22 +118,22 @@ pub fn stamp(data: &[u8]) -> bool {
 /// Target of the search for manoeuvres in a record.
 pub fn find(data: &[u8]) -> bool {
     let Ok(ReadRecord { trial, .. }) = read("case.csv", data) else { return false };
-    let found = trial::find::manoeuvres(&trial::find::Signals {
+    let found = trial::find::detect_manoeuvres(&trial::find::LogSignals {
         time: trial.time(),
         rudder: trial.rudder(),
         heading: trial.heading(),
         speed: trial.channel(Channel::Speed),
-        propeller: trial.channel(Channel::PropellerRate),
+        propeller_rate: trial.channel(Channel::PropellerRate),
     });
     let (first, last) = (trial.time()[0], trial.time()[trial.len() - 1]);
     for manoeuvre in &found {
         assert!(
-            first <= manoeuvre.from && manoeuvre.from < manoeuvre.until && manoeuvre.until <= last,
+            first <= manoeuvre.start_time && manoeuvre.start_time < manoeuvre.end_time && manoeuvre.end_time <= last,
             "{manoeuvre:?}"
         );
-        assert!((manoeuvre.from..=manoeuvre.until).contains(&manoeuvre.first_execute), "{manoeuvre:?}");
+        assert!((manoeuvre.start_time..=manoeuvre.end_time).contains(&manoeuvre.first_execute_time), "{manoeuvre:?}");
     }
-    assert!(found.is_sorted_by(|one, next| one.from < next.from), "manoeuvres out of order");
+    assert!(found.is_sorted_by(|one, next| one.start_time < next.start_time), "manoeuvres out of order");
     !found.is_empty()
 }
 
@@ -199,8 +199,8 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
             assert!(rows.iter().all(|row| row.cell == 0 && row.method < design.methods.len()), "rows of the block");
             rows.iter().for_each(|row| tally.add(row));
             let summary = tally.finish();
-            drop(tables::summary_in_brief(&summary, design).to_markdown());
-            !tables::summary(&summary.methods, design).to_csv().is_empty()
+            drop(tables::brief_summary_table(&summary, design).to_markdown());
+            !tables::method_summary_table(&summary.methods, design).to_csv().is_empty()
         }
         Err(BlockFileError::Changed(problem)) => is_one_message(&problem),
         Err(BlockFileError::OtherBlock(other)) => other != label,
@@ -276,7 +276,8 @@ pub fn formula(data: &[u8]) -> bool {
 fn worked_out(formula: &Formula) {
     for size in [0.0, -0.3, 1e-12, 7.0, 1e300, f64::NAN] {
         let some = Some(size);
-        let measured = MeasuredChannels { speed: some, sway: some, wind_speed: some, wind_from: some, propeller: some };
+        let measured =
+            MeasuredChannels { speed: some, sway: some, wind_speed: some, wind_from: some, propeller_rate: some };
         for measured in [measured, MeasuredChannels::default()] {
             let values = vec![size; formula.parameters().len()];
             let plain = acceleration::<f64>(formula, &values, size, &measured);

@@ -85,7 +85,7 @@ fn truth(way: Way, rudder_deg: f64, heading_deg: f64, rate_deg_s: f64, period_s:
 
 /// Index of the row with the maximum deviation between executes `k` and `k + 1` (from 0).
 pub(super) fn peak(truth: &Truth, k: usize) -> usize {
-    let span = truth.executes[k].time..truth.executes[k + 1].time;
+    let span = truth.execute_orders[k].time..truth.execute_orders[k + 1].time;
     let rows = (0..truth.time.len()).filter(|&row| span.contains(&truth.time[row]));
     rows.max_by(|&i, &j| truth.heading[i].abs().total_cmp(&truth.heading[j].abs())).expect("rows between two executes")
 }
@@ -103,7 +103,7 @@ pub fn section() -> Section {
                 format!("first-order/{angle}-{angle}/check-yaw-{}", k + 1),
                 format!("{angle}/{angle} at 2.5 deg/s, closed form: time to check yaw {}", k + 1),
                 (published, 2),
-                truth.time[peak(&truth, k + 1)] - truth.executes[k + 1].time,
+                truth.time[peak(&truth, k + 1)] - truth.execute_orders[k + 1].time,
                 Tolerance::Absolute(TOLERANCE),
                 "s",
             ));
@@ -134,7 +134,7 @@ fn table_row(way: Way, row: &Row, checks: &mut Vec<Check>) {
         let tolerance = Tolerance::Absolute(tolerance);
         checks.push(Check::new(id, what, (published, decimals), ours, tolerance, unit));
     };
-    let made = &truth.executes;
+    let made = &truth.execute_orders;
     for (k, published) in executes.into_iter().enumerate() {
         let what = if k == 0 { "initial turning time".to_owned() } else { format!("execute {}", k + 2) };
         let allowed = TOLERANCE + lateness * k as f64;
@@ -159,7 +159,7 @@ fn table_row(way: Way, row: &Row, checks: &mut Vec<Check>) {
 /// t_peak = T ln(1 + r_e/A) and overshoot = T r_e − A T ln(1 + r_e/A) with A = K δ, for an instantaneous rudder.
 fn overshoot_in_closed_form() -> Vec<Check> {
     let truth = truth(Way::Exact, 10.0, 10.0, f64::INFINITY, 0.001);
-    let execute = truth.executes[1];
+    let execute = truth.execute_orders[1];
     let peak = peak(&truth, 1);
     let log = 16.3 * to_deg(execute.yaw_rate).ln_1p();
     let formula = "re-derived from Nomoto et al. (1957)";

@@ -1,7 +1,7 @@
 //! Linear indices, straight approach and steady turning of the hulls with three degrees of freedom.
 
 use ship::angle::{KNOT, from_deg, to_deg};
-use ship::linear::PrimeSwayYaw;
+use ship::linear::PrimeSwayYawMatrices;
 use ship::ships::{self, kvlcc2, mariner, seiun_like};
 use ship::vessel::mmg::Mmg;
 use ship::{Particulars, Ship};
@@ -10,7 +10,7 @@ use simulate::{Manoeuvre, Side, SimulatedShip, Simulation, SteeringGear, StreamK
 use super::{Check, Section, Tolerance};
 
 /// Sway-yaw part of the S175 container ship, prime. Source: Son and Nomoto (1982).
-const S175: PrimeSwayYaw = PrimeSwayYaw {
+const S175: PrimeSwayYawMatrices = PrimeSwayYawMatrices {
     M: [[0.01497, 0.000_352_5], [0.000_352_5, 0.000_875]],
     N: [[0.012_035, 0.005_22], [0.003_843_6, 0.002_43]],
     b: [-0.002_578, 0.001_26],
@@ -154,12 +154,12 @@ fn steady_rate(ship: &Ship, rudder_deg: f64) -> f64 {
     let manoeuvre = Manoeuvre::turning_circle(from_deg(rudder_deg.abs())).with_first_side(side).lasting(STEADY);
     let mut simulation = Simulation::new(SimulatedShip::from_ship(ship), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.32));
-    simulation.recording.period = 100.0;
+    simulation.recording.sampling_period = 100.0;
     let truth = simulation.run(&StreamKey::default()).expect("a hull turns").truth;
     to_deg(*truth.yaw_rate.last().expect("a record has rows"))
 }
 
 /// Ship of the registry with this identifier.
 pub(super) fn registered(id: &str) -> Ship {
-    ships::find(id).expect("a ship of the registry")
+    ships::find_ship(id).expect("a ship of the registry")
 }

@@ -5,7 +5,7 @@ use identify::{Identifier, IdentifierSettings, integral_least_squares, maximum_l
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
-use ship::first_order::State;
+use ship::first_order::YawState;
 use simulate::{Manoeuvre, SimulatedTrial, StreamKey};
 use trial::noise_model::NoiseModel;
 
@@ -33,7 +33,7 @@ struct Bound {
 
 fn bound_of(simulated: &SimulatedTrial, ship: &FirstOrder, noise_deg: f64) -> Bound {
     let truth = &simulated.truth;
-    let initial = State { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
+    let initial = YawState { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
     let noise = NoiseModel::compass(from_deg(noise_deg));
     let bound = maximum_likelihood::cramer_rao(&simulated.trial, ship, initial, &noise).expect("an excited record");
     let (k, t) = bound.indices(ship);

@@ -5,7 +5,7 @@ use identify::{Identifier, maximum_likelihood, output_error};
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::from_deg;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use simulate::{Simulation, StreamKey};
 use trial::noise_model::{MomentKind, NoiseModel};
 use trial::{Channel, Columns, RecordOrigin, Trial};
@@ -25,7 +25,7 @@ fn uneven() -> Trial {
         time.iter().map(|&t| from_deg(8.0) * wave(t - 9.0) + from_deg(0.05) * (5.1 * t + 1.0).cos()).collect();
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
     let origin = RecordOrigin::Simulated { scenario: String::from("uneven"), cell: 0, replicate: 0 };
-    Trial::new("uneven", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
+    Trial::new("uneven", origin, Columns { time, channels, unknown_columns: Vec::new() }).expect("a valid record")
 }
 
 /// Number of trials of one cell.
@@ -50,7 +50,7 @@ fn sample(simulation: &Simulation, truth: &FirstOrder, noise: &NoiseModel) -> Sa
             let trials = std::slice::from_ref(&run.trial);
             let found = own.identify(trials).expect("a zig-zag is identified");
             let plain = other.identify(trials).expect("a zig-zag is identified");
-            let initial = State { heading: run.truth.heading[0], yaw_rate: run.truth.yaw_rate[0] };
+            let initial = YawState { heading: run.truth.heading[0], yaw_rate: run.truth.yaw_rate[0] };
             let bound = maximum_likelihood::cramer_rao(&run.trial, truth, initial, noise).expect("excited");
             let (k, t) = bound.indices(truth);
             let of = |found: trial::Quantity, plain: f64, bound: f64, truth: f64| {
@@ -100,7 +100,7 @@ pub fn section() -> Section {
     let truth = case.ship;
     for (name, walk_deg, rudder_deg) in [("walk of 0.1 deg/√s", 0.1, 0.0), ("rudder noise of 0.1 deg", 0.0, 0.1)] {
         let mut simulation = case.simulation();
-        simulation.disturbances.random_walk = from_deg(walk_deg);
+        simulation.disturbances.moment_random_walk = from_deg(walk_deg);
         simulation.sensors.rudder_noise = from_deg(rudder_deg);
         let moment_level = truth.K_over_T * from_deg(walk_deg);
         let moment = if walk_deg > 0.0 { MomentKind::Walk } else { MomentKind::None };

@@ -61,7 +61,9 @@ pub fn hull_coefficients() -> Section {
     let mut published = kvlcc2::FULL_SCALE;
     let mut checks = Vec::new();
     // Values taken from KVLCC2 itself would agree by construction.
-    for coefficient in prior.coefficients.iter().filter(|coefficient| !coefficient.formula.source.contains("KVLCC2")) {
+    for coefficient in
+        prior.coefficient_priors.iter().filter(|coefficient| !coefficient.formula.source.contains("KVLCC2"))
+    {
         let Some(&mut value) = published.coefficient_mut(coefficient.formula.key) else { continue };
         let what = format!("KVLCC2 from her particulars: {}", coefficient.formula.symbol);
         let tolerance = Tolerance::Absolute(DEVIATIONS * coefficient.sd);

@@ -133,10 +133,10 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let base = method.identify(std::slice::from_ref(&trial)).expect("a zig-zag").response;
     let replay = identify::replay::replay(&trial, &base).expect("finite");
     let trials = [trial];
-    let time = candidates::ship_time(&trials, base.K_over_T);
+    let time = candidates::ship_length_time(&trials, base.K_over_T);
     let problem = FittedRecords::new(vec![PreparedRecord::unaveraged(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
-    let all = candidates::all(&problem.records, &trials, time, &selection);
+    let all = candidates::candidate_terms(&problem.records, &trials, time, &selection);
     let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());
     let term = term.expect("a candidate");
     let own = Structure::base(1, time);
@@ -147,10 +147,10 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
         let theta = start_point(&own, &base, values.into_iter());
         problem.fit(&structure, theta, vec![replay.initial_state()], &whitening, EFFORT)
     });
-    let height = |fit: &StructureFit| fit.misfit + fit.penalty;
+    let height = |fit: &StructureFit| fit.misfit + fit.prior_penalty;
     let best = fits.into_iter().min_by(|one, other| height(one).total_cmp(&height(other))).expect("two starts");
     let square: f64 = best.residual.iter().flatten().map(|e| e * e).sum();
-    let rms = to_deg((square / problem.observations() as f64).sqrt());
+    let rms = to_deg((square / problem.heading_count() as f64).sqrt());
     let terms = structure.physical(&best.theta)[own.base_parameter_count()..].to_vec();
     (to_deg(replay.rms()), base.K(), base.T(), rms, terms)
 }

@@ -50,7 +50,8 @@ fn facts(rudder: f64, heading: f64, gain: f64, time: f64, rate: f64) -> Option<V
         Case { ship, rudder_deg: rudder, heading_deg: heading, rate_deg_s: rate, duration_s: 480.0, ..Case::default() };
     let mut simulation = case.simulation();
     // The record begins while the rudder falls through 7°.
-    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some((rudder - FIRST_RUDDER) / rate));
+    (simulation.recording.after_execute, simulation.recording.first_row_offset) =
+        (Some(2), Some((rudder - FIRST_RUDDER) / rate));
     simulation.recording.duration = Some(270.0);
     let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
     if trial.len() < 271 {

@@ -121,7 +121,7 @@ impl Anchor {
 
     fn run(&self, way: Way, duration: f64, period: f64) -> SimulatedTrial {
         let mut simulation = self.simulation(way, duration);
-        simulation.recording.period = period;
+        simulation.recording.sampling_period = period;
         simulation.run(&StreamKey::default()).expect("a hull reaches its executes")
     }
 
@@ -157,7 +157,7 @@ pub fn section() -> Section {
 fn characteristics(anchor: &Anchor, way: Way, checks: &mut Vec<Check>) {
     // Eight periods: the last one is the limit cycle.
     let truth = anchor.run(way, 8.0 * anchor.period, STEP).truth;
-    let made = &truth.executes;
+    let made = &truth.execute_orders;
     let model = anchor.ship == "kvlcc2-l7";
     let (name, label) = (anchor.name(), if way == Way::Exact { "exact" } else { "stepped" });
     let mut push = |id: &str, what: &str, published, decimals, ours, tolerance, unit| {
@@ -195,7 +195,7 @@ fn characteristics(anchor: &Anchor, way: Way, checks: &mut Vec<Check>) {
 
 fn fit(anchor: &Anchor, checks: &mut Vec<Check>) {
     let Fit { until, k: (k, decimals), t, bias_deg, rms_deg } = anchor.fit;
-    let executes = &anchor.run(Way::Stepped, 4.0 * anchor.period, 1.0).truth.executes;
+    let executes = &anchor.run(Way::Stepped, 4.0 * anchor.period, 1.0).truth.execute_orders;
     let trial = anchor.run(Way::Stepped, executes[until - 1].time.floor(), 1.0).trial;
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let found = method.identify(&[trial]).expect("a zig-zag is identified");

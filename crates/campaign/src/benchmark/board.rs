@@ -76,7 +76,7 @@ impl WilsonShare {
 }
 
 /// Leaderboards of all tasks that have a score, one per task and study; `reference` labels the reference method.
-pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Leaderboard> {
+pub fn leaderboards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Leaderboard> {
     let scored = by_task_and_study(cases, |task| task.score_label().is_some());
     scored.into_iter().map(|((task, study), group)| leaderboard(task, study, &group, methods, reference)).collect()
 }
@@ -176,7 +176,7 @@ pub struct SetLine {
 }
 
 /// Medians of all methods, by task and set.
-pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
+pub fn set_lines(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
     let scored = cases.iter().filter(|case| case.task.score_label().is_some());
     let line = |((task, set), group): ((BenchTask, &str), Vec<&BenchCase>)| {
         let scores = Scores::from_cases(&group, methods);
@@ -217,7 +217,7 @@ mod tests {
         // b is twice as good unless it fails, which it does in four of ten.
         let cases: Vec<BenchCase> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
         let methods = ["a", "b", "c"].map(str::to_owned);
-        let boards = boards(&cases, &methods, "a");
+        let boards = leaderboards(&cases, &methods, "a");
         let [Leaderboard { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
         let [b, a] = &standings[..] else { panic!("c was not asked: {standings:?}") };
         assert_eq!((b.method.as_str(), b.failed, b.median.value, b.quantile_90.value), ("b", 4, Some(1.0), None));
@@ -233,6 +233,6 @@ mod tests {
         let cases: Vec<BenchCase> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
         let all: Vec<&BenchCase> = cases.iter().collect();
         assert_eq!(Scores::from_cases(&all, &[]).clusters, [vec![0, 1], vec![2, 3, 4]]);
-        assert_eq!(boards(&cases, &["a".to_owned()], "a")[0].standings[0].median.ci95, None, "two clusters");
+        assert_eq!(leaderboards(&cases, &["a".to_owned()], "a")[0].standings[0].median.ci95, None, "two clusters");
     }
 }

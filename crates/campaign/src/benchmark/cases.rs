@@ -141,7 +141,8 @@ pub struct BenchRecord {
 /// Record that was not used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Skipped {
+#[schemars(rename = "Skipped")]
+pub struct SkippedRecord {
     /// Name of the set.
     pub set: String,
     /// Name of the record.

@@ -25,7 +25,7 @@ pub struct NamingLine {
 }
 
 /// Counts of effect names for every method and, within it, every set.
-pub fn lines(cases: &[BenchCase], methods: &[String]) -> Vec<NamingLine> {
+pub fn naming_lines(cases: &[BenchCase], methods: &[String]) -> Vec<NamingLine> {
     let naming_cases = cases.iter().filter(|case| case.task == BenchTask::Name);
     let sets = grouped(naming_cases, |case| case.set.as_str());
     methods.iter().flat_map(|method| sets.iter().filter_map(|(set, cases)| line(method, set, cases))).collect()
@@ -46,7 +46,7 @@ fn line(method: &str, set: &str, cases: &[&BenchCase]) -> Option<NamingLine> {
 
 /// Sum of the lines of a method over all sets with a missing effect, or over all without; `None` if there is no such
 /// line. Set and effect of the sum are those of its first line.
-pub fn total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<NamingLine> {
+pub fn naming_total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<NamingLine> {
     let selected = lines.iter().filter(|line| line.method == method && line.missing.is_some() == is_missing);
     let joined = selected.cloned().reduce(|sum, line| NamingLine {
         counts: std::array::from_fn(|place| sum.counts[place] + line.counts[place]),

@@ -19,7 +19,7 @@ pub struct OverallRanking {
 }
 
 /// Ranking over the tasks that predict a record outside the fit; `None` if there is no such task.
-pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
+pub fn overall_ranking(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let is_prediction = |task| matches!(task, BenchTask::OtherSide | BenchTask::OtherAmplitude | BenchTask::Circle);
     let groups = by_task_and_study(cases, is_prediction);
     let boards = groups.iter().map(|((task, study), _)| (*task, (*study).to_owned())).collect();

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::board::{Leaderboard, boards};
-use crate::benchmark::cases::{BenchCase, BenchSet, BenchTask, Skipped};
+use crate::benchmark::board::{Leaderboard, leaderboards};
+use crate::benchmark::cases::{BenchCase, BenchSet, BenchTask, SkippedRecord};
 use crate::benchmark::naming::{self, NamingLine};
-use crate::benchmark::overall::{OverallRanking, overall};
+use crate::benchmark::overall::{OverallRanking, overall_ranking};
 use crate::benchmark::study_cases;
 use crate::rows::StudyRow;
 use crate::scenario::Scenario;
@@ -33,7 +33,7 @@ pub struct BenchDocument {
     /// Sets of trials, each with its records.
     pub sets: Vec<BenchSet>,
     /// Absent records, and trials with a failed simulation.
-    pub skipped: Vec<Skipped>,
+    pub skipped: Vec<SkippedRecord>,
     /// Leaderboards.
     pub boards: Vec<Leaderboard>,
     /// Counts of correct and wrong effect names.
@@ -88,9 +88,9 @@ impl BenchDocument {
             schema: SCHEMA.to_owned(),
             studies: studies.iter().map(facts).collect(),
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            boards: boards(&cases, &labels, &reference),
-            naming: naming::lines(&cases, &labels),
-            overall: overall(&cases, &labels),
+            boards: leaderboards(&cases, &labels, &reference),
+            naming: naming::naming_lines(&cases, &labels),
+            overall: overall_ranking(&cases, &labels),
             reference,
             methods: labels,
             summaries,

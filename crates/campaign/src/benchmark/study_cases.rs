@@ -11,18 +11,20 @@ use simulate::Manoeuvre;
 use trial::manoeuvre::rounded_deg;
 use trial::{RecordOrigin, Side, Trial, ZigZag};
 
-use crate::benchmark::cases::{BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, Skipped, rounded};
+use crate::benchmark::cases::{
+    BenchCase, BenchRecord, BenchSet, BenchTask, CaseAnswer, Naming, SkippedRecord, rounded,
+};
 use crate::engine::is_method_failure;
 use crate::rows::{NamedEffect, StudyRow, TraceRow};
 use crate::scenario::records::RecordSet;
-use crate::scenario::{DesignCell, HULL, Method, Procedure, Scenario};
+use crate::scenario::{DesignCell, HULL_ID, Method, Procedure, Scenario};
 use crate::statistics::distinct;
 
 /// Cases of a study, its sets, and the skipped records and trials.
 pub(super) struct StudyCases {
     pub cases: Vec<BenchCase>,
     pub sets: Vec<BenchSet>,
-    pub skipped: Vec<Skipped>,
+    pub skipped: Vec<SkippedRecord>,
 }
 
 /// Record with the steering that determines its task.
@@ -103,7 +105,7 @@ impl CellTasks {
             None => cell.manoeuvres().into_iter().map(SteeredRecord::simulated).collect(),
         };
         let missing = cell.missing_effects();
-        let is_to_be_named = is_of_names && missing.len() <= 1 && missing.iter().all(|id| id != HULL);
+        let is_to_be_named = is_of_names && missing.len() <= 1 && missing.iter().all(|id| id != HULL_ID);
         Self {
             set: match cell.labels.first() {
                 Some(label) => format!("{}, {label}", scenario.name),
@@ -121,8 +123,8 @@ impl CellTasks {
     fn of_trial(&self, set: Option<&RecordSet>, replicate: u64) -> (Vec<&SteeredRecord>, Option<&SteeredRecord>) {
         match set.map(|set| &set.splits[replicate as usize]) {
             Some(split) => {
-                let fitted = split.fitted.iter().map(|&place| &self.records[place]).collect();
-                (fitted, split.validation.map(|place| &self.records[place]))
+                let fitted = split.fitted_indices.iter().map(|&place| &self.records[place]).collect();
+                (fitted, split.validation_index.map(|place| &self.records[place]))
             }
             None => (self.records[..self.fitted].iter().collect(), self.records.get(self.fitted)),
         }
@@ -143,7 +145,7 @@ impl CellTasks {
 
 /// Cases of a study from its rows, which are in the order of the design.
 pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
-    let lacks = |cell: &DesignCell| cell.missing_effects().iter().any(|id| id != HULL);
+    let lacks = |cell: &DesignCell| cell.missing_effects().iter().any(|id| id != HULL_ID);
     let is_of_names = scenario.cells.iter().any(lacks);
     let of_cell = |cell: &DesignCell| CellTasks::new(scenario, cell, is_of_names);
     let cells: Vec<CellTasks> = scenario.cells.iter().map(of_cell).collect();
@@ -153,7 +155,7 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
         let (cell, questions) = (&scenario.cells[place], &cells[place]);
         if let Some(reason) = rows[0].failure.as_deref().filter(|failure| !is_method_failure(failure)) {
             let record = format!("trial {replicate}");
-            skipped.push(Skipped { set: questions.set.clone(), record, reason: reason.to_owned() });
+            skipped.push(SkippedRecord { set: questions.set.clone(), record, reason: reason.to_owned() });
             continue;
         }
         let (fitted, judge) = questions.of_trial(cell.record_set(), replicate);
@@ -183,15 +185,15 @@ pub(super) fn cases(scenario: &Scenario, rows: &[StudyRow]) -> StudyCases {
 }
 
 /// Absent records of every set with the reason, each once.
-fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<Skipped> {
+fn absent(scenario: &Scenario, cells: &[CellTasks]) -> Vec<SkippedRecord> {
     let sets = scenario.cells.iter().zip(cells).filter_map(|(cell, entry)| Some((cell.record_set()?, &entry.set)));
-    let of_set = |(records, set): (&RecordSet, &String)| -> Vec<Skipped> {
-        let skipped = |(record, reason): &(String, String)| Skipped {
+    let of_set = |(records, set): (&RecordSet, &String)| -> Vec<SkippedRecord> {
+        let skipped = |(record, reason): &(String, String)| SkippedRecord {
             set: set.clone(),
             record: record.clone(),
             reason: reason.clone(),
         };
-        records.absent.iter().map(skipped).collect()
+        records.absent_files.iter().map(skipped).collect()
     };
     distinct(sets.flat_map(of_set))
 }
@@ -240,7 +242,7 @@ fn answer(task: BenchTask, row: &StudyRow, method: &Method, missing: Option<&str
 /// Effects named by a trace, each followed by its aliases.
 fn named(trace: &TraceRow) -> Vec<Vec<String>> {
     let group = |term: &NamedEffect| std::iter::once(&term.id).chain(&term.aliases).map(|id| id.to_string()).collect();
-    trace.named.iter().map(group).collect()
+    trace.named_effects.iter().map(group).collect()
 }
 
 /// Result with the relative errors of K and T of a first-order ship, %, the larger as score, and whether the intervals

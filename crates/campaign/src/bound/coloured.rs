@@ -1,10 +1,10 @@
 //! Cramér–Rao bound for a compass with a white and a coloured error at once, which the likelihood of the methods does
 //! not cover. The heading sensitivities are whitened by the innovations filter of the two errors (Kalman 1960).
 
-use identify::likelihood::track::{Coefficients, MotionColumns, Track, is_backward};
+use identify::likelihood::track::{MotionCoefficients, MotionColumns, TrialSignals, is_backward};
 use nalgebra::{Matrix3, Matrix5};
 use ship::FirstOrder;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use simulate::disturbance::GaussMarkov;
 use trial::Trial;
 
@@ -25,10 +25,10 @@ pub struct CompassError {
 ///
 /// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the record does not
 /// determine the parameters. Source: Cramér (1946), Rao (1945).
-pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, error: &CompassError) -> Option<Matrix3<f64>> {
-    let track = Track::new(trial);
+pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: YawState, error: &CompassError) -> Option<Matrix3<f64>> {
+    let track = TrialSignals::new(trial);
     let a = truth.inverse_T;
-    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::from_response(truth) };
+    let mut coefficients = MotionCoefficients { anchor: initial, ..MotionCoefficients::from_response(truth) };
     if is_backward(a) {
         coefficients.anchor = track.last_state_from(a, &coefficients);
     }
@@ -97,14 +97,14 @@ mod tests {
             let bound = |white_deg: f64, sd_deg: f64, correlation_time: f64| {
                 let coloured = GaussMarkov { sd: from_deg(sd_deg), correlation_time };
                 let error = CompassError { white: from_deg(white_deg), coloured };
-                cramer_rao(&trial, &truth, State::default(), &error).expect("a zig-zag determines the ship")
+                cramer_rao(&trial, &truth, YawState::default(), &error).expect("a zig-zag determines the ship")
             };
             let white = |sd_deg: f64| {
                 let noise = NoiseModel::compass(from_deg(sd_deg));
-                maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known").matrix
+                maximum_likelihood::cramer_rao(&trial, &truth, YawState::default(), &noise).expect("known").matrix
             };
             let noise = NoiseModel { heading_correlation_time: Some(10.0), ..NoiseModel::compass(from_deg(0.3)) };
-            let coloured = maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known");
+            let coloured = maximum_likelihood::cramer_rao(&trial, &truth, YawState::default(), &noise).expect("known");
             let pairs = [
                 (bound(0.1, 1e-6, 10.0), white(0.1)),
                 (bound(0.3, 0.4, 1e-3), white(0.5)),

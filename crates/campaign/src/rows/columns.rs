@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use ::trace::Verdict;
+use ::trace::TraceVerdict;
 use document::trace::Dependence;
 use identify::StopReason;
 use serde::Deserialize;
@@ -63,7 +63,7 @@ macro_rules! access {
 /// Columns of every file of rows, in order. They are followed by the further columns that apply to the study, one
 /// column `axis.NAME` per axis of the design, a number or the label of the point, and one `draw.KEY` per sampled value,
 /// in the unit of the key. For measured records the last columns are `fitted` and `judge`, the names of records.
-pub const COLUMNS: [RowColumn; 22] = columns! {
+pub const COMMON_COLUMNS: [RowColumn; 22] = columns! {
     "cell", "index of the cell in the design, from 0" => count(cell);
     "replicate", "index of the trial in its cell, from 0; every method sees the same trial" => count(replicate);
     "method", "label of the method" => method();
@@ -72,9 +72,9 @@ pub const COLUMNS: [RowColumn; 22] = columns! {
     "K of the first-order response nearest to the ship; null where there is none"
         => number(true_k_per_s);
     "true_T_s", "T of that response" => number(true_t_s);
-    "bound_K_per_s", "Cramér–Rao bound on the standard deviation of K on this trial" => number(bound, 0);
-    "bound_T_s", "the same of T" => number(bound, 1);
-    "bound_K_over_T_per_s2", "the same of K/T" => number(bound, 2);
+    "bound_K_per_s", "Cramér–Rao bound on the standard deviation of K on this trial" => number(cramer_rao_sd, 0);
+    "bound_T_s", "the same of T" => number(cramer_rao_sd, 1);
+    "bound_K_over_T_per_s2", "the same of K/T" => number(cramer_rao_sd, 2);
     "K_per_s", "estimate of K" => number(k_per_s);
     "K_lower95_per_s", "lower end of its 95 % interval; null where the method quotes none" => number(k_ci95_per_s, 0);
     "K_upper95_per_s", "upper end" => number(k_ci95_per_s, 1);
@@ -110,7 +110,7 @@ pub const TRACE_COLUMNS: [RowColumn; 8] = columns! {
         => text(probabilities, set_probabilities);
     "trace_margin",
     "log evidence for the one missing effect less that for the best other one; null where not one is missing"
-        => traced(margin);
+        => traced(evidence_margin);
     "trace_expected",
     "likelihood ratio of the truth against the nearest first-order response, on average over the noise"
         => traced(expected_2_ln_lambda);
@@ -161,12 +161,12 @@ fn set_failure(row: &mut StudyRow, text: &str) -> Result<(), String> {
 }
 
 fn stop(row: &StudyRow) -> Option<Cow<'_, str>> {
-    row.stop.map(Cow::Borrowed)
+    row.stop_reason.map(Cow::Borrowed)
 }
 
 fn set_stop(row: &mut StudyRow, word: &str) -> Result<(), String> {
     let id = StopReason::ALL.iter().map(|reason| reason.as_str()).find(|id| *id == word);
-    row.stop = Some(id.ok_or_else(|| format!("no method stops because of {word:?}"))?);
+    row.stop_reason = Some(id.ok_or_else(|| format!("no method stops because of {word:?}"))?);
     Ok(())
 }
 
@@ -188,18 +188,19 @@ fn list<T>(text: &str, entries: &str, read: impl Fn(&str) -> Option<T>) -> Resul
 
 /// Column of the named effects: identifiers joined by `+`.
 fn named(row: &StudyRow) -> Option<Cow<'_, str>> {
-    Some(joined(&row.traced.as_ref()?.named, |effect| effect.id.to_string()))
+    Some(joined(&row.traced.as_ref()?.named_effects, |effect| effect.id.to_string()))
 }
 
 fn set_named(row: &mut StudyRow, text: &str) -> Result<(), String> {
-    answer(row).named = list(text, "effects", |id| Some(NamedEffect { id: id.into(), ..NamedEffect::default() }))?;
+    answer(row).named_effects =
+        list(text, "effects", |id| Some(NamedEffect { id: id.into(), ..NamedEffect::default() }))?;
     Ok(())
 }
 
 /// Column of the named effects with their aliases: `effect|alias`, joined by `+`.
 fn groups(row: &StudyRow) -> Option<Cow<'_, str>> {
     let group = |effect: &NamedEffect| [std::slice::from_ref(&effect.id), effect.aliases.as_slice()].concat().join("|");
-    Some(joined(&row.traced.as_ref()?.named, group))
+    Some(joined(&row.traced.as_ref()?.named_effects, group))
 }
 
 /// Sets the aliases of the effects that an earlier column has named.
@@ -209,7 +210,7 @@ fn set_groups(row: &mut StudyRow, text: &str) -> Result<(), String> {
         Some(NamedEffect { id: ids.next()?, aliases: ids.collect(), ..NamedEffect::default() })
     };
     let groups = list(text, "groups of effects", group)?;
-    let named = &mut answer(row).named;
+    let named = &mut answer(row).named_effects;
     if !groups.iter().map(|group| &group.id).eq(named.iter().map(|effect| &effect.id)) {
         return Err(format!("the groups {text:?} are not those of the effects named"));
     }
@@ -224,7 +225,7 @@ fn sizes(row: &StudyRow) -> Option<Cow<'_, str>> {
         format!("{symbol}={value}{}", sd.map_or_else(String::new, |sd| format!("±{sd}")))
     };
     let effect = |effect: &NamedEffect| effect.parameters.iter().map(size).collect::<Vec<_>>().join("|");
-    Some(joined(&row.traced.as_ref()?.named, effect))
+    Some(joined(&row.traced.as_ref()?.named_effects, effect))
 }
 
 /// Sets the parameters of the effects that an earlier column has named.
@@ -237,7 +238,7 @@ fn set_sizes(row: &mut StudyRow, text: &str) -> Result<(), String> {
     };
     let effect = |part: &str| part.split('|').filter(|size| !size.is_empty()).map(size).collect::<Option<Vec<_>>>();
     let fault = || format!("{text:?} does not list the parameters of the effects named");
-    let named = &mut answer(row).named;
+    let named = &mut answer(row).named_effects;
     let parts: Vec<&str> = if named.is_empty() { Vec::new() } else { text.split('+').collect() };
     if parts.len() != named.len() {
         return Err(fault());
@@ -261,13 +262,13 @@ fn read_time(text: &str) -> Option<Option<f64>> {
 }
 
 fn times(row: &StudyRow) -> Option<Cow<'_, str>> {
-    Some(joined(&row.traced.as_ref()?.named, |effect| time(effect.time_s)))
+    Some(joined(&row.traced.as_ref()?.named_effects, |effect| time(effect.time_s)))
 }
 
 /// Sets the times of the effects that an earlier column has named.
 fn set_times(row: &mut StudyRow, text: &str) -> Result<(), String> {
     let times = list(text, "times of effects", read_time)?;
-    let named = &mut answer(row).named;
+    let named = &mut answer(row).named_effects;
     if named.len() != times.len() {
         return Err(format!("the times {text:?} are not those of the effects named"));
     }
@@ -279,7 +280,7 @@ fn located(row: &StudyRow) -> Option<Cow<'_, str>> {
     let moment = |LocatedMoment { depends_on, form, from_s, until_s, alternatives }: &LocatedMoment| {
         format!("{depends_on};{form};{};{};{}", time(*from_s), time(*until_s), alternatives.join("|"))
     };
-    Some(joined(&row.traced.as_ref()?.located, moment))
+    Some(joined(&row.traced.as_ref()?.located_moments, moment))
 }
 
 fn set_located(row: &mut StudyRow, text: &str) -> Result<(), String> {
@@ -293,7 +294,7 @@ fn set_located(row: &mut StudyRow, text: &str) -> Result<(), String> {
             alternatives: ids.split('|').filter(|id| !id.is_empty()).map(Box::from).collect(),
         })
     };
-    answer(row).located = list(text, "located moments", moment)?;
+    answer(row).located_moments = list(text, "located moments", moment)?;
     Ok(())
 }
 
@@ -315,7 +316,7 @@ fn verdict(row: &StudyRow) -> Option<Cow<'_, str>> {
 }
 
 fn set_verdict(row: &mut StudyRow, word: &str) -> Result<(), String> {
-    let verdict = Verdict::deserialize(StrDeserializer::<UnknownWord>::new(word));
+    let verdict = TraceVerdict::deserialize(StrDeserializer::<UnknownWord>::new(word));
     answer(row).verdict = verdict.map_err(|_| format!("no trace ends with {word:?}"))?;
     Ok(())
 }
@@ -324,7 +325,7 @@ fn predicted(row: &StudyRow) -> Option<Cow<'_, str>> {
     let write = |PredictedCharacteristic { name, truth, median, ci90: [low, high] }: &PredictedCharacteristic| {
         format!("{name}={truth}|{median}|{low}|{high}")
     };
-    Some(joined(row.predicted.as_ref()?, write))
+    Some(joined(row.predictions.as_ref()?, write))
 }
 
 fn set_predicted(row: &mut StudyRow, text: &str) -> Result<(), String> {
@@ -334,6 +335,6 @@ fn set_predicted(row: &mut StudyRow, text: &str) -> Result<(), String> {
         let [truth, median, low, high] = *numbers.as_slice() else { return None };
         Some(PredictedCharacteristic { name: name.into(), truth, median, ci90: [low, high] })
     };
-    row.predicted = Some(list(text, "predictions", read)?.into());
+    row.predictions = Some(list(text, "predictions", read)?.into());
     Ok(())
 }

@@ -20,7 +20,7 @@ use super::layout::RowLayout;
 use super::row::StudyRow;
 use crate::block::Block;
 use crate::parquet_table::{self, ColumnValues};
-use crate::scenario::hex;
+use crate::scenario::hex_digits;
 
 /// Metadata key of the label.
 const LABEL: &str = "kempf.block";
@@ -99,7 +99,7 @@ fn values_hash(columns: &[ColumnValues]) -> String {
         column.write_to(&mut bytes);
         digest.update(&bytes);
     }
-    hex(&digest.finalize())
+    hex_digits(&digest.finalize())
 }
 
 /// Bytes of the Parquet file of a block.
@@ -117,7 +117,7 @@ fn written(rows: &[StudyRow], label: &BlockLabel, layout: &RowLayout) -> parquet
     let label = SealedLabel { label: label.clone(), rows: rows.len(), values_sha256: values_hash(&columns) };
     parquet_table::write_group(&mut file, columns)?;
     let label = serde_json::to_string(&label).expect("texts and numbers");
-    let sha256 = hex(&Sha256::digest(&label));
+    let sha256 = hex_digits(&Sha256::digest(&label));
     file.append_key_value_metadata(KeyValue::new(LABEL.to_owned(), label));
     file.append_key_value_metadata(KeyValue::new(LABEL_SHA256.to_owned(), sha256));
     file.into_inner()
@@ -174,7 +174,7 @@ fn label_of(file: &FileMetaData) -> Result<SealedLabel, String> {
         file.key_value_metadata()?.iter().find(|pair| pair.key == name).and_then(|pair| pair.value.as_deref())
     };
     let label = value(LABEL).ok_or("it is not a block of a study")?;
-    if value(LABEL_SHA256) != Some(hex(&Sha256::digest(label)).as_str()) {
+    if value(LABEL_SHA256) != Some(hex_digits(&Sha256::digest(label)).as_str()) {
         return Err("its label is damaged".to_owned());
     }
     serde_json::from_str(label).map_err(|error| error.to_string())

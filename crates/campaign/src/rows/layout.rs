@@ -7,12 +7,12 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::TypePtr;
 
 use super::columns::{
-    Access, BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
+    Access, BASE_COLUMNS, COMMON_COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
 };
 use super::row::StudyRow;
 use crate::design::{Design, TrialRecords};
 use crate::parquet_table::{self, ColumnValues};
-use crate::scenario::TRACE;
+use crate::scenario::TRACE_ID;
 
 /// Row layout of one study: fixed columns, axes, sampled values and records.
 pub struct RowLayout {
@@ -42,9 +42,9 @@ impl RowLayout {
             let is_number = numbers.iter().all(Option::is_some);
             (name.clone(), if is_number { ColumnValues::Numbers(numbers) } else { ColumnValues::Texts(labels()) })
         };
-        let is_traced = design.methods.iter().any(|method| method.id == TRACE);
+        let is_traced = design.methods.iter().any(|method| method.id == TRACE_ID);
         let groups = [
-            (true, COLUMNS.as_slice()),
+            (true, COMMON_COLUMNS.as_slice()),
             (design.cells.iter().any(|cell| cell.is_base_with_effects), &BASE_COLUMNS),
             (is_traced, &TRACE_COLUMNS),
             (is_traced && design.cells.iter().any(|cell| cell.physics.is_some()), &LOCATED_COLUMNS),
@@ -55,7 +55,7 @@ impl RowLayout {
             methods: design.methods.iter().map(|method| method.label.clone()).collect(),
             fixed: groups.into_iter().filter(|(is_there, _)| *is_there).flat_map(|(_, columns)| columns).collect(),
             axes: design.axes.iter().enumerate().map(axis).collect(),
-            draws: design.draws.clone(),
+            draws: design.drawn_keys.clone(),
             records: design.is_measured().then(|| design.cells.iter().map(|cell| cell.records.clone()).collect()),
         }
     }
@@ -135,9 +135,9 @@ impl RowLayout {
             },
             ColumnSource::Axis(_, points) => points.for_rows(rows),
             ColumnSource::Record(of, records) => record_names(of, records, rows),
-            ColumnSource::Draw(index) => {
-                ColumnValues::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
-            }
+            ColumnSource::Draw(index) => ColumnValues::Numbers(
+                rows.iter().map(|row| row.drawn_values.as_ref().map(|drawn| drawn[index])).collect(),
+            ),
         })
     }
 
@@ -183,7 +183,7 @@ impl RowLayout {
         }
         if !self.draws.is_empty() {
             for (row, drawn) in rows.iter_mut().zip(drawn) {
-                row.drawn = drawn.into_iter().collect::<Option<Vec<f64>>>().map(Arc::from);
+                row.drawn_values = drawn.into_iter().collect::<Option<Vec<f64>>>().map(Arc::from);
             }
         }
         Ok(rows)

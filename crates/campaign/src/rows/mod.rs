@@ -11,7 +11,9 @@ mod row;
 #[cfg(test)]
 mod tests;
 
-pub use columns::{BASE_COLUMNS, COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS};
+pub use columns::{
+    BASE_COLUMNS, COMMON_COLUMNS, LOCATED_COLUMNS, PREDICT_COLUMNS, RECORD_COLUMNS, RowColumn, TRACE_COLUMNS,
+};
 pub use file::{BlockFileError, BlockLabel, decode, encode};
 pub use layout::RowLayout;
 pub use row::{EffectParameterValue, LocatedMoment, NamedEffect, PredictedCharacteristic, StudyRow, TraceRow};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ::trace::Verdict;
+use ::trace::TraceVerdict;
 use document::trace::{Dependence, EffectEntry, ParameterEntry};
 
 /// Effect named by a trace.
@@ -90,16 +90,16 @@ pub struct PredictedCharacteristic {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceRow {
     /// Verdict.
-    pub verdict: Verdict,
+    pub verdict: TraceVerdict,
     /// Named effects, in the order of discovery.
-    pub named: Vec<NamedEffect>,
+    pub named_effects: Vec<NamedEffect>,
     /// Located moments outside the list of effects, clearest first.
-    pub located: Vec<LocatedMoment>,
+    pub located_moments: Vec<LocatedMoment>,
     /// Identifiers of effects with a probability of at least 0.005, and this probability.
     pub probabilities: Vec<(Box<str>, f64)>,
     /// Log evidence of the missing effect less that of the best other effect; `None` unless exactly one effect is
     /// missing.
-    pub margin: Option<f64>,
+    pub evidence_margin: Option<f64>,
     /// Expected 2 ln Λ, with the likelihood ratio Λ of the truth to the nearest first-order response; `None` unless the
     /// heading noise is white.
     pub expected_2_ln_lambda: Option<f64>,
@@ -131,7 +131,7 @@ pub struct StudyRow {
     /// T of the first-order base, s.
     pub base_t_s: Option<f64>,
     /// Cramér–Rao bounds on the standard deviations of K (1/s), T (s) and K/T (1/s²) of this trial.
-    pub bound: Option<[f64; 3]>,
+    pub cramer_rao_sd: Option<[f64; 3]>,
     /// Estimate of K, 1/s.
     pub k_per_s: Option<f64>,
     /// Lower and upper end of the 95 % interval of K, 1/s.
@@ -154,13 +154,13 @@ pub struct StudyRow {
     /// Number of model evaluations.
     pub evaluations: Option<f64>,
     /// Reason why the method stopped.
-    pub stop: Option<&'static str>,
+    pub stop_reason: Option<&'static str>,
     /// Result of a trace.
     pub traced: Option<Box<TraceRow>>,
     /// Predicted characteristics of manoeuvres, empty without a covariance; `None` for a study without predictions.
-    pub predicted: Option<Box<[PredictedCharacteristic]>>,
+    pub predictions: Option<Box<[PredictedCharacteristic]>>,
     /// Sampled values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
-    pub drawn: Option<Arc<[f64]>>,
+    pub drawn_values: Option<Arc<[f64]>>,
 }
 
 impl StudyRow {

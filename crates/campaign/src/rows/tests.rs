@@ -1,4 +1,4 @@
-use ::trace::Verdict;
+use ::trace::TraceVerdict;
 use document::trace::Dependence;
 
 use super::columns::{Access, RECORD_COLUMNS};
@@ -10,14 +10,14 @@ fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
         labels: vec![noise.to_string(), trial.to_owned()],
         values: vec![Some(noise), None],
-        trials: 0..1,
+        stored_replicates: 0..1,
         ..CellFacts::default()
     };
     let method = |label: &str| MethodName { label: label.into(), id: label.into() };
     Design {
         axes: vec!["noise [°]".into(), "trial".into()],
         methods: vec![method("output-error"), method("srivc")],
-        draws: vec!["ship.first-order.K-per-s".into()],
+        drawn_keys: vec!["ship.first-order.K-per-s".into()],
         cells: vec![cell(0.1, "10/10"), cell(0.5, "10/10")],
         ..Design::default()
     }
@@ -30,7 +30,7 @@ fn good(replicate: u64) -> StudyRow {
         method: 0,
         true_k_per_s: Some(0.1),
         true_t_s: Some(16.3),
-        bound: Some([1e-4, 2e-2, 3e-6]),
+        cramer_rao_sd: Some([1e-4, 2e-2, 3e-6]),
         k_per_s: Some(0.1001 + replicate as f64 * 1e-9),
         k_ci95_per_s: Some([0.0999, 0.1003]),
         t_s: Some(16.31),
@@ -39,8 +39,8 @@ fn good(replicate: u64) -> StudyRow {
         heading_rmse_deg: Some(0.1),
         validation_rmse_deg: Some(0.2),
         evaluations: Some(90.0),
-        stop: Some("converged"),
-        drawn: Some([0.1].into()),
+        stop_reason: Some("converged"),
+        drawn_values: Some([0.1].into()),
         ..StudyRow::default()
     }
 }
@@ -51,7 +51,7 @@ fn failed(replicate: u64) -> StudyRow {
         replicate,
         method: 1,
         failure: Some("not-excited".into()),
-        drawn: Some([0.1].into()),
+        drawn_values: Some([0.1].into()),
         ..StudyRow::default()
     }
 }
@@ -79,7 +79,10 @@ fn sizes_of_effects_belong_to_the_effects_named() {
         effect("speed_loss", vec![size("m_a", 0.1 + 0.2, Some(1e-17)), size("e_n′", -0.0, None)]),
         effect("wind_moment", Vec::new()),
     ];
-    let row = |named| StudyRow { traced: Some(Box::new(TraceRow { named, ..TraceRow::default() })), ..good(0) };
+    let row = |named| StudyRow {
+        traced: Some(Box::new(TraceRow { named_effects: named, ..TraceRow::default() })),
+        ..good(0)
+    };
     let [.., column] = &RECORD_COLUMNS;
     let Access::Text(get, set) = column.access else { panic!("{} is a text", column.name) };
     for named in [named, Vec::new()] {
@@ -100,7 +103,7 @@ fn sizes_of_effects_belong_to_the_effects_named() {
 #[test]
 fn traces_and_predictions_have_columns_of_their_own() {
     let mut design = Design { predicts: true, ..design() };
-    design.methods[1].id = crate::scenario::TRACE.into();
+    design.methods[1].id = crate::scenario::TRACE_ID.into();
     design.cells[1].physics = Some(MissingPhysics::Nothing { disturbed: false });
     let layout = RowLayout::from_design(&design);
     let effect = |id: &str, aliases: &[&str], time_s| NamedEffect {
@@ -112,13 +115,13 @@ fn traces_and_predictions_have_columns_of_their_own() {
     let (depends_on, form, alternatives) =
         (Dependence::YawRate, "moment with r|r|".into(), vec!["a".into(), "b".into()]);
     let moment = LocatedMoment { depends_on, form, from_s: Some(1.0 / 3.0), until_s: None, alternatives };
-    let answer = |verdict: Verdict, named: Vec<NamedEffect>| {
+    let answer = |verdict: TraceVerdict, named: Vec<NamedEffect>| {
         let answer = TraceRow {
             verdict,
-            named,
-            located: vec![moment.clone(); 2],
+            named_effects: named,
+            located_moments: vec![moment.clone(); 2],
             probabilities: vec![("speed_loss".into(), 0.25), ("wind_moment".into(), 1.0)],
-            margin: Some(31.5),
+            evidence_margin: Some(31.5),
             expected_2_ln_lambda: None,
             fitted_band_coverage: Some(0.95),
             validation_band_coverage: None,
@@ -128,9 +131,10 @@ fn traces_and_predictions_have_columns_of_their_own() {
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"], Some(-0.1)), effect("speed_loss", &[], None)];
     let name = "zig-zag 20/20 first_overshoot_deg";
     let figure = |truth| PredictedCharacteristic { name: name.into(), truth, median: 1.0 / 3.0, ci90: [-0.1, 1e-17] };
-    let predicts = StudyRow { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(256) };
-    let none = StudyRow { replicate: 257, predicted: Some(Box::default()), ..answer(Verdict::Clean, Vec::new()) };
-    let rows = vec![predicts, answer(Verdict::Traced, named), good(257), none];
+    let predicts = StudyRow { predictions: Some([figure(0.1), figure(7.0)].into()), ..good(256) };
+    let none =
+        StudyRow { replicate: 257, predictions: Some(Box::default()), ..answer(TraceVerdict::Clean, Vec::new()) };
+    let rows = vec![predicts, answer(TraceVerdict::Traced, named), good(257), none];
     assert_eq!(decode(written(&rows, &layout), &label(), &layout), Ok(rows));
     assert_eq!(layout.names().filter(|name| ["trace_margin", "predicted"].contains(&name.as_str())).count(), 2);
     // Without stated physics no column contains located moments.
@@ -199,8 +203,8 @@ fn a_damaged_block_never_gives_other_rows() {
 #[test]
 fn axes_and_draws_are_columns() {
     let names: Vec<String> = RowLayout::from_design(&design()).names().collect();
-    assert_eq!(names[..COLUMNS.len()], COLUMNS.map(|column| column.name));
-    assert_eq!(names[COLUMNS.len()..], ["axis.noise [°]", "axis.trial", "draw.ship.first-order.K-per-s"]);
+    assert_eq!(names[..COMMON_COLUMNS.len()], COMMON_COLUMNS.map(|column| column.name));
+    assert_eq!(names[COMMON_COLUMNS.len()..], ["axis.noise [°]", "axis.trial", "draw.ship.first-order.K-per-s"]);
 }
 
 #[test]
@@ -223,7 +227,7 @@ fn every_column_is_documented() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/results.md"))
         .expect("the page is there");
     for RowColumn { name, meaning, .. } in
-        COLUMNS.iter().chain(&BASE_COLUMNS).chain(&TRACE_COLUMNS).chain(&RECORD_COLUMNS).chain(&PREDICT_COLUMNS)
+        COMMON_COLUMNS.iter().chain(&BASE_COLUMNS).chain(&TRACE_COLUMNS).chain(&RECORD_COLUMNS).chain(&PREDICT_COLUMNS)
     {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");

@@ -56,7 +56,7 @@ pub struct SampledSpecification<'a> {
     /// Complete specification.
     pub specification: Cow<'a, Specification>,
     /// Sampled values in the units of their keys, in the order of
-    /// [`Scenario::draws`](crate::scenario::Scenario::draws).
+    /// [`Scenario::drawn_keys`](crate::scenario::Scenario::drawn_keys).
     pub drawn: Vec<f64>,
 }
 
@@ -95,13 +95,14 @@ impl DesignCell {
 
     /// Number of simulated records per trial, without the validation; 0 for measured records.
     pub fn record_count(&self) -> usize {
-        self.specification().map_or(0, |spec| 1 + spec.further.len())
+        self.specification().map_or(0, |spec| 1 + spec.further_simulations.len())
     }
 
     /// Manoeuvres of a simulated trial: of its record, of further records, and of the validation; empty for measured
     /// records.
     pub fn manoeuvres(&self) -> Vec<&Manoeuvre> {
-        let Some(Specification { simulation, further, validation, .. }) = self.specification() else {
+        let Some(Specification { simulation, further_simulations: further, validation, .. }) = self.specification()
+        else {
             return Vec::new();
         };
         std::iter::once(simulation).chain(further).chain(validation).map(|run| &run.manoeuvre).collect()
@@ -109,30 +110,31 @@ impl DesignCell {
 
     /// Identifiers of the effects missing from a first-order base in its trials.
     pub fn missing_effects(&self) -> Vec<String> {
-        self.specification().map_or_else(Vec::new, |spec| spec.missing.clone())
+        self.specification().map_or_else(Vec::new, |spec| spec.missing_effects.clone())
     }
 
     /// `true` if its ship states the missing physics.
     pub(crate) fn states_physics(&self) -> bool {
-        self.specification().is_some_and(|spec| spec.stated.is_some())
+        self.specification().is_some_and(|spec| spec.stated_physics.is_some())
     }
 
     /// Physics that a first-order base lacks in its trials: as stated in the scenario, or from its listed effects;
     /// `None` for measured records, and if neither determines it.
     pub(crate) fn physics(&self) -> Option<MissingPhysics> {
-        let Specification { stated, missing, simulation, .. } = self.specification()?;
+        let Specification { stated_physics: stated, missing_effects: missing, simulation, .. } =
+            self.specification()?;
         let is_disturbed = simulation.sensors.rudder_noise != 0.0 || simulation.disturbances != Disturbances::default();
         stated.clone().or_else(|| MissingPhysics::from_effects(missing, is_disturbed))
     }
 
     /// `true` for a response ship with effects, whose first-order base differs from the nearest first-order response.
     pub fn is_base_with_effects(&self) -> bool {
-        self.specification().is_some_and(|spec| spec.truth.is_none() && spec.base.is_some())
+        self.specification().is_some_and(|spec| spec.true_response.is_none() && spec.base_response.is_some())
     }
 
     /// `true` for a simulated ship that is not first order, so that K and T are compared with the nearest response.
     pub fn is_compared_with_nearest(&self) -> bool {
-        self.specification().is_some_and(|spec| spec.truth.is_none())
+        self.specification().is_some_and(|spec| spec.true_response.is_none())
     }
 
     /// Length and approach speed of the ship, if known; for random values at the middle of their distributions.
@@ -193,12 +195,12 @@ impl DrawnSettings {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&fault.key));
             (of_key.unwrap_or(index), fault)
         };
-        let middle: Vec<f64> = draws.iter().map(SampledKey::middle).collect();
+        let middle: Vec<f64> = draws.iter().map(SampledKey::median_value).collect();
         let document = select_parts(document, &[ScenarioPart::Trial]);
         let drawn = Self { draws: draws.to_vec(), document, name: name.to_owned(), folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|fault| attributed(0, fault))?;
         for (index, draw) in draws.iter().enumerate() {
-            for value in draw.ends() {
+            for value in draw.range_ends() {
                 let mut values = middle.clone();
                 values[index] = value;
                 drawn.specification(&values).map_err(|fault| attributed(index, fault))?;
@@ -211,7 +213,7 @@ impl DrawnSettings {
     fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let mut document = self.document.clone();
         for (draw, &value) in self.draws.iter().zip(values) {
-            sweep::set(&mut document, &draw.key, Value::Float(value))?;
+            sweep::set_key(&mut document, &draw.key, Value::Float(value))?;
         }
         let wire: ScenarioWire = reader::read_document(&document)?;
         resolve::trial_specification(&wire, &self.name, &self.folder)
@@ -239,7 +241,7 @@ fn settings<'a>(points: &'a [&sweep::SweepPoint]) -> impl DoubleEndedIterator<It
 /// Document with the settings of points applied.
 fn changed(document: &Table, points: &[&sweep::SweepPoint]) -> Result<Table, KeyFault> {
     let mut changed = document.clone();
-    settings(points).try_for_each(|setting| sweep::set(&mut changed, &setting.key, setting.value.clone()))?;
+    settings(points).try_for_each(|setting| sweep::set_key(&mut changed, &setting.key, setting.value.clone()))?;
     Ok(changed)
 }
 
@@ -279,7 +281,7 @@ pub(crate) fn simulated_cell(
     let wire: ScenarioWire = reader::read_document(&changed).map_err(attribute)?;
     let specification = resolve::trial_specification(&wire, name, folder).map_err(attribute)?;
     let methods = methods_of_cell(&wire.identifier, design).map_err(attribute)?;
-    limits::check_count("draw", wire.draw.len(), limits::MAX_DRAWS).map_err(attribute)?;
+    limits::check_count("draw", wire.draw.len(), limits::MAX_DRAW_ENTRIES).map_err(attribute)?;
     let draws: Vec<SampledKey> = wire
         .draw
         .iter()

@@ -12,7 +12,7 @@ use trial::file::{self, FileError, FileKind};
 
 use crate::failure::Failure;
 use crate::scenario::cell::{self, DesignCell};
-use crate::scenario::identity::{self, hex};
+use crate::scenario::identity::{self, hex_digits};
 use crate::scenario::method::{Method, MethodName, Procedure, methods};
 use crate::scenario::outside_estimates::OutsideEstimates;
 use crate::scenario::part::ScenarioPart;
@@ -45,7 +45,7 @@ pub struct Scenario {
     /// Prose and presentation.
     pub prose: Prose,
     /// Keys that are sampled anew in every trial.
-    pub draws: Vec<String>,
+    pub drawn_keys: Vec<String>,
     /// Stopping rule of the cells; `None` if every cell has all replicates.
     pub stop: Option<StopRule>,
     /// Manoeuvres predicted from every estimate; `None` without predictions.
@@ -83,7 +83,7 @@ impl Scenario {
             name::check_file_name(&manifest.name).map_err(|unfit| {
                 let KeyFault { key, mark, problem, expected, advice } =
                     text_fault(KeyPath::from_dotted("name"), &manifest.name, unfit);
-                Failure::in_text(path, &text, locate::span(&text, &key, mark), &problem, &expected, &advice)
+                Failure::in_text(path, &text, locate::key_span(&text, &key, mark), &problem, &expected, &advice)
             })?;
             let (text, seed) = (manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
             let mut document = table_of(path, &text)?;
@@ -104,7 +104,7 @@ impl Scenario {
     fn from_table(path: &Path, name: &str, text: String, document: &Table, seed: Option<u64>) -> Result<Self, Failure> {
         let folder = &folder_of(path);
         let scenario = Self::from_document(document, name, folder).map_err(|fault| {
-            let span = locate::span(&text, &fault.key, fault.mark);
+            let span = locate::key_span(&text, &fault.key, fault.mark);
             Failure::in_text(path, &text, span, &fault.problem, &fault.expected, &fault.advice)
         })?;
         let design = identity::study_design(document);
@@ -113,7 +113,7 @@ impl Scenario {
             false => identity::study_sha256(&design, folder)?,
         };
         let seed = seed.unwrap_or(scenario.seed);
-        Ok(Self { seed, design_sha256, file_sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
+        Ok(Self { seed, design_sha256, file_sha256: hex_digits(&Sha256::digest(text.as_bytes())), text, ..scenario })
     }
 
     /// Resolves a document; the caller sets identity and text.
@@ -142,11 +142,11 @@ impl Scenario {
         let methods = methods(&wire.identifier)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
         wire.stop.as_ref().map_or(Ok(()), |stop| stop.check(&methods))?;
-        let axes = sweep::axes(&wire.sweep)?;
-        let combinations = sweep::product(&axes)?;
-        checks::titles(&axes)?;
-        checks::size(wire.replicates, combinations.len(), methods.len())?;
-        checks::draws(&wire.draw, &axes)?;
+        let axes = sweep::resolve_axes(&wire.sweep)?;
+        let combinations = sweep::combine_points(&axes)?;
+        checks::check_cell_titles(&axes)?;
+        checks::check_study_size(wire.replicates, combinations.len(), methods.len())?;
+        checks::check_draws(&wire.draw, &axes)?;
         let of_cells = cell::select_parts(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
         let cells = combinations.iter().map(|points| cell::simulated_cell(&of_cells, points, &methods, name, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
@@ -156,7 +156,7 @@ impl Scenario {
             seed: wire.seed,
             replicates: wire.replicates,
             published: wire.published,
-            draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
+            drawn_keys: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             stop: wire.stop,
             predictions,
             ..design
@@ -171,15 +171,15 @@ impl Scenario {
         prose.check()?;
         let methods = methods(&identifier)?;
         let predictions = predict.as_ref().map(|predict| predict.resolve()).transpose()?;
-        let axes = sweep::axes(&sweep)?;
-        let combinations = sweep::product(&axes)?;
-        checks::titles(&axes)?;
+        let axes = sweep::resolve_axes(&sweep)?;
+        let combinations = sweep::combine_points(&axes)?;
+        checks::check_cell_titles(&axes)?;
         let cells = combinations.iter().map(|points| cell::measured_cell(document, points, &methods, folder));
         let cells: Vec<DesignCell> = cells.collect::<Result<_, _>>()?;
         let counts = cells.iter().filter_map(DesignCell::record_set).map(|set| set.splits.len() as u64);
         let replicates = counts.max().unwrap_or(0);
         // Without any record there is no trial, which is reported in the run.
-        checks::size(replicates.max(1), cells.len(), methods.len())?;
+        checks::check_study_size(replicates.max(1), cells.len(), methods.len())?;
         let design = Self::from_design(name, prose, axes, cells, &methods)?;
         Ok(Self { seed, replicates, predictions, ..design })
     }
@@ -194,9 +194,9 @@ impl Scenario {
         cells: Vec<DesignCell>,
         methods: &[Method],
     ) -> Result<Self, KeyFault> {
-        checks::detail(&prose.output.detail, &cells)?;
-        checks::marks(&prose.output.marks, &axes)?;
-        checks::highlight(&prose.output.highlight, methods, &axes, &cells)?;
+        checks::check_detail_titles(&prose.output.detail, &cells)?;
+        checks::check_marked_values(&prose.output.marks, &axes)?;
+        checks::check_highlight(&prose.output.highlight, methods, &axes, &cells)?;
         Ok(Self {
             name: name.to_owned(),
             seed: 0,
@@ -205,7 +205,7 @@ impl Scenario {
             cells,
             published: Published::default(),
             prose,
-            draws: Vec::new(),
+            drawn_keys: Vec::new(),
             stop: None,
             predictions: None,
             design_sha256: String::new(),
@@ -231,7 +231,8 @@ impl Scenario {
             for cell in &mut self.cells {
                 cell.methods.retain(|method| labels.contains(&method.label));
             }
-            self.design_sha256 = hex(&Sha256::digest(format!("{} of {}", self.design_sha256, labels.join(", "))));
+            self.design_sha256 =
+                hex_digits(&Sha256::digest(format!("{} of {}", self.design_sha256, labels.join(", "))));
         }
         (!self.cells[0].methods.is_empty()).then_some(self)
     }
@@ -260,7 +261,7 @@ impl Scenario {
         if self.method_labels().any(|other| other == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
         }
-        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {identity_text}", self.design_sha256)));
+        self.design_sha256 = hex_digits(&Sha256::digest(format!("{} {label} {identity_text}", self.design_sha256)));
         for cell in &mut self.cells {
             cell.methods.push(Method { label: label.to_owned(), procedure: procedure.clone() });
         }

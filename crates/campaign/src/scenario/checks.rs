@@ -15,7 +15,7 @@ use crate::scenario::sweep::SweepAxis;
 const MAX_TRIALS: u64 = 1_000_000_000;
 
 /// Checks the number of trials and of methods times cells.
-pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFault> {
+pub fn check_study_size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFault> {
     let key = KeyPath::from_dotted("replicates");
     if replicates == 0 {
         return Err(KeyFault::value(
@@ -45,7 +45,7 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFaul
 }
 
 /// Checks the length of cell titles, which are parts of file names.
-pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
+pub fn check_cell_titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let longest = |axis: &SweepAxis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
     let characters = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
     if characters <= MAX_NAME_BYTES {
@@ -60,8 +60,8 @@ pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
 }
 
 /// Checks that no key is changed by two draws, or by a draw and a sweep.
-pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
-    limits::check_count("draw", draws.len(), limits::MAX_DRAWS)?;
+pub fn check_draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
+    limits::check_count("draw", draws.len(), limits::MAX_DRAW_ENTRIES)?;
     for (index, draw) in draws.iter().enumerate() {
         let key = KeyPath::from_dotted(draw.key());
         let place = KeyPath::from_dotted("draw").child(index).child("key");
@@ -81,7 +81,7 @@ pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
 }
 
 /// Checks that every title of `output.detail` names a cell.
-pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
+pub fn check_detail_titles(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
     let cell_titles: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
     let places: HashSet<&str> = cell_titles.iter().map(String::as_str).collect();
     let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
@@ -97,7 +97,7 @@ pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
 }
 
 /// Checks that every mark has an axis, a finite place and a label.
-pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
+pub fn check_marked_values(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let axis_names: Vec<&str> = axes.iter().map(|axis| axis.name.as_str()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::from_dotted("output.marks").child(index);
@@ -113,7 +113,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
 }
 
 /// Checks that every highlighted name belongs to a method, a point of a sweep or a cell.
-pub fn highlight(
+pub fn check_highlight(
     Highlight { series, rows, .. }: &Highlight,
     methods: &[Method],
     axes: &[SweepAxis],

@@ -186,13 +186,13 @@ impl SampledKey {
     }
 
     /// Median of the distribution, clamped to the range of the draw.
-    pub fn middle(&self) -> f64 {
+    pub fn median_value(&self) -> f64 {
         let [low, high] = self.between;
         self.shape.middle().clamp(low, high)
     }
 
     /// Finite ends of the range, without an end at or below 0 if the logarithm is drawn.
-    pub fn ends(&self) -> impl Iterator<Item = f64> {
+    pub fn range_ends(&self) -> impl Iterator<Item = f64> {
         self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
     }
 

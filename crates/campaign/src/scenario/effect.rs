@@ -7,8 +7,8 @@ use std::sync::{Arc, LazyLock};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, json};
-use ship::Regressor;
-use ship::effects::{Effect, Formula, NumberConversion, ScenarioNumber, meaning};
+use ship::RegressorChannel;
+use ship::effects::{Effect, Formula, NumberConversion, ScenarioKey, effect_meaning};
 use ship::ships::ShipModel;
 use ship::{ResponseModel, Ship, ShortNumber};
 use toml::{Table, Value};
@@ -34,10 +34,10 @@ struct EffectForm {
 /// Forms in the order of the list of effects, keys in the order of parameters.
 static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
     let form = |effect: Arc<dyn Effect>| {
-        let keys = effect.scenario_numbers()?.into_iter().map(NumberKey::from).collect();
+        let keys = effect.scenario_keys()?.into_iter().map(NumberKey::from).collect();
         Some(EffectForm { effect, keys })
     };
-    ship::effects::all().into_iter().filter_map(form).collect()
+    ship::effects::all_effects().into_iter().filter_map(form).collect()
 });
 
 /// Identifiers of the effects that a scenario can add.
@@ -47,8 +47,8 @@ static IDS: LazyLock<Vec<&str>> = LazyLock::new(|| {
     ids
 });
 
-impl From<ScenarioNumber> for NumberKey {
-    fn from(ScenarioNumber { key, meaning, default, .. }: ScenarioNumber) -> Self {
+impl From<ScenarioKey> for NumberKey {
+    fn from(ScenarioKey { key, meaning, default, .. }: ScenarioKey) -> Self {
         Self { key, meaning, is_required: default.is_none(), default }
     }
 }
@@ -102,7 +102,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
         }
     };
     let formula = parse_formula(&line, key)?;
-    values.retain(|name, _| !physics::KEYS.contains(&name));
+    values.retain(|name, _| !physics::PHYSICS_KEYS.contains(&name));
     let values: BTreeMap<String, f64> = reader::read_table(&values, place)?;
     let keys: Vec<NumberKey> =
         formula.parameters().iter().map(|entry| NumberKey::required(entry.key, "A constant of the formula.")).collect();
@@ -125,7 +125,7 @@ fn formula(entry: &Table, place: &KeyPath) -> Result<(Arc<Formula>, Vec<f64>), K
 /// Fails for inconsistent keys, and for a further effect.
 pub fn stated_physics(entries: &[EffectWire]) -> Result<Option<MissingPhysics>, KeyFault> {
     for (index, EffectWire(entry)) in entries.iter().enumerate() {
-        let of_physics = entry.iter().filter(|(name, _)| physics::KEYS.contains(&name.as_str()));
+        let of_physics = entry.iter().filter(|(name, _)| physics::PHYSICS_KEYS.contains(&name.as_str()));
         let keys: Table = of_physics.map(|(name, value)| (name.clone(), value.clone())).collect();
         let place = KeyPath::from_dotted("effect").child(index);
         let Some(first) = keys.keys().next() else { continue };
@@ -152,13 +152,13 @@ pub fn parse_formula(line: &str, key: KeyPath) -> Result<Arc<Formula>, KeyFault>
 }
 
 /// Refuses a formula of a channel absent from the trials, since its moment would be zero.
-fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Result<(), KeyFault> {
+fn refuse_without(formula: &Formula, lacking: &[RegressorChannel], key: KeyPath) -> Result<(), KeyFault> {
     let Some(channel) = lacking.iter().find(|channel| formula.is_inactive_without(**channel)) else { return Ok(()) };
     let (signal, advice) = match channel {
-        Regressor::Sway => ("sway velocity", "add `[speed-and-sway]`"),
-        Regressor::Speed => ("speed", "add `[speed-and-sway]`"),
-        Regressor::Wind => ("relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
-        Regressor::Propeller => ("propeller revolutions", "leave the effect out"),
+        RegressorChannel::Sway => ("sway velocity", "add `[speed-and-sway]`"),
+        RegressorChannel::Speed => ("speed", "add `[speed-and-sway]`"),
+        RegressorChannel::Wind => ("relative wind", "add `[disturbance.wind]` with `speed-m-s`"),
+        RegressorChannel::Propeller => ("propeller revolutions", "leave the effect out"),
     };
     let problem = format!("`{}` needs {signal}, and the simulated ship has none", formula.id());
     Err(KeyFault::value(key, problem, "expected a formula over signals of the ship", advice))
@@ -168,7 +168,7 @@ fn refuse_without(formula: &Formula, lacking: &[Regressor], key: KeyPath) -> Res
 ///
 /// Fails for a hull, whose equations contain such effects, for a second-order effect on a second-order ship, for a
 /// parameter outside its range, and for a formula of a channel in `lacking`, the channels absent from the trials.
-pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[Regressor]) -> Result<Ship, KeyFault> {
+pub fn with_effects(ship: Ship, entries: &[EffectWire], lacking: &[RegressorChannel]) -> Result<Ship, KeyFault> {
     if entries.is_empty() {
         return Ok(ship);
     }
@@ -240,14 +240,14 @@ struct EffectParameter {
 
 /// Parameters of an effect on a ship with 1/T `inverse_time`, 1/s.
 fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectParameter> {
-    let keys = form.effect.scenario_numbers().unwrap_or_default();
-    let setting = |number: &ScenarioNumber| {
+    let keys = form.effect.scenario_keys().unwrap_or_default();
+    let setting = |number: &ScenarioKey| {
         let written = numbers.get(number.key).copied().or(number.default).unwrap_or(f64::NAN);
         let unit = number.unit * if number.conversion == NumberConversion::OverT { inverse_time } else { 1.0 };
         EffectParameter { value: written * unit, key: number.key, written, unit }
     };
     let settings: Vec<EffectParameter> = keys.iter().map(setting).collect();
-    if let ([_, ScenarioNumber { conversion: NumberConversion::Direction, .. }], [strength, from]) =
+    if let ([_, ScenarioKey { conversion: NumberConversion::Direction, .. }], [strength, from]) =
         (&keys[..], &settings[..])
     {
         // The parameters are the components of strength · sin 2(ψ_w − ψ) along cos 2ψ and sin 2ψ.
@@ -270,7 +270,7 @@ pub fn schema(generator: &mut SchemaGenerator) -> Schema {
             _ => (json!({ "oneOf": forms }), "; one of these."),
         };
         let mut effect = closed_table_schema(Map::from_iter([(id.to_owned(), below)]), vec![id]);
-        effect["description"] = (meaning(id).to_owned() + end).into();
+        effect["description"] = (effect_meaning(id).to_owned() + end).into();
         effect
     });
     let mut properties = PhysicsWire::json_schema(generator).to_value()["properties"].take();

@@ -49,11 +49,11 @@ pub fn study_sha256(design: &Table, folder: &Path) -> Result<String, Failure> {
             }
         }
     }
-    Ok(hex(&digest.finalize()))
+    Ok(hex_digits(&digest.finalize()))
 }
 
 /// Bytes as hexadecimal digits.
-pub fn hex(bytes: &[u8]) -> String {
+pub fn hex_digits(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -69,7 +69,7 @@ fn shortened(value: Option<&Value>) -> String {
 }
 
 /// Differences between two documents, one sentence per dotted key with both values; list entries count from 0.
-pub fn differences(there: &Table, here: &Table) -> Vec<String> {
+pub fn document_differences(there: &Table, here: &Table) -> Vec<String> {
     differences_below("", there, here)
 }
 
@@ -115,14 +115,14 @@ mod tests {
         let here =
             document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.figure = 20\n[ship.yukun]");
         assert_eq!(
-            differences(&there, &here),
+            document_differences(&there, &here),
             [
                 "`identifier.0`: { method = { srivc = {} } } there, nothing here",
                 "`sensor.heading-noise-deg`: 0.1 there, 0.2 here",
                 "`stop`: nothing there, { figure = 20 } here"
             ]
         );
-        assert!(differences(&there, &there).is_empty());
+        assert!(document_differences(&there, &there).is_empty());
     }
 
     #[test]

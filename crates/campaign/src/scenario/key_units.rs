@@ -1,7 +1,8 @@
 //! Units in the names of keys, and axis titles from keys.
 
 /// Endings of keys and their units; an ending stands before any shorter ending with which it ends.
-const UNITS: [(&str, &str); 22] = [
+const UNITS: [(&str, &str); 23] = [
+    ("stop.standard-error", "%"),
     ("-deg-per-root-s", "deg/√s"),
     ("-s2-per-deg2", "s²/deg²"),
     ("-s-per-deg2", "s/deg²"),

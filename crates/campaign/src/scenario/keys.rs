@@ -40,7 +40,7 @@ impl std::fmt::Display for KeyDefault {
 }
 
 /// All keys of a scenario, in the order of its types.
-pub fn keys() -> Vec<ScenarioKey> {
+pub fn scenario_keys() -> Vec<ScenarioKey> {
     let schema = simulated_schema().to_value();
     let mut keys = Vec::new();
     SchemaWalk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn every_key_has_a_meaning_and_no_link() {
-        let keys = keys();
+        let keys = scenario_keys();
         let silent: Vec<&str> = keys.iter().filter(|key| key.meaning.is_empty()).map(|key| key.key.as_str()).collect();
         assert!(silent.is_empty(), "{}", silent.join("\n"));
         let linked: Vec<&ScenarioKey> =
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn units_defaults_and_names_are_those_of_the_types() {
-        let keys = keys();
+        let keys = scenario_keys();
         let of = |wanted: &str| keys.iter().find(|key| key.key == wanted).unwrap_or_else(|| panic!("no {wanted}"));
         assert_eq!(of("steering-gear.rate-deg-s").unit, "deg/s");
         assert_eq!(of("steering-gear.lag-s").default, KeyDefault::Value("0".into()));

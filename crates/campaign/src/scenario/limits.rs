@@ -4,10 +4,10 @@
 use crate::scenario::problem::{KeyFault, KeyPath};
 
 /// Maximum number of `[[sweep]]` entries: with two points each, more would exceed the maximum number of cells.
-pub const MAX_SWEEPS: usize = 16;
+pub const MAX_SWEEP_ENTRIES: usize = 16;
 
 /// Maximum number of `[[draw]]` entries: each is checked at both ends of its range in every cell.
-pub const MAX_DRAWS: usize = 64;
+pub const MAX_DRAW_ENTRIES: usize = 64;
 
 /// Maximum number of `[[identifier]]` entries: each is a column of every table.
 pub const MAX_METHODS: usize = 100;

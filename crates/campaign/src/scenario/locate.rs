@@ -10,7 +10,7 @@ use crate::scenario::problem::{FaultMark, KeyPath};
 /// line with content.
 ///
 /// A table or list is located by its name, since its range may be pages long.
-pub fn span(text: &str, path: &KeyPath, mark: FaultMark) -> Range<usize> {
+pub fn key_span(text: &str, path: &KeyPath, mark: FaultMark) -> Range<usize> {
     let nowhere = first_line(text);
     let Ok(document) = DeTable::parse(text) else { return nowhere };
     let mut place = nowhere;
@@ -73,7 +73,7 @@ mod tests {
          [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
 
     fn at(path: &str, mark: FaultMark) -> &str {
-        &TEXT[span(TEXT, &KeyPath::from_dotted(path), mark)]
+        &TEXT[key_span(TEXT, &KeyPath::from_dotted(path), mark)]
     }
 
     #[test]
@@ -82,14 +82,14 @@ mod tests {
         assert_eq!(at("sensor.heading-noise-deg", FaultMark::Name), "heading-noise-deg");
         assert_eq!(at("identifier.1.label", FaultMark::Value), "\"x\"");
         let swept = KeyPath::from_dotted("sweep.0.points.0.set").child("a.b");
-        assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Value)], "3");
-        assert_eq!(&TEXT[span(TEXT, &swept, FaultMark::Name)], "\"a.b\"");
+        assert_eq!(&TEXT[key_span(TEXT, &swept, FaultMark::Value)], "3");
+        assert_eq!(&TEXT[key_span(TEXT, &swept, FaultMark::Name)], "\"a.b\"");
     }
 
     #[test]
     fn finds_a_letter_of_a_text() {
         let marked = |text: &str, at: usize| {
-            let span = span(text, &KeyPath::from_dotted("effect.0.formula"), FaultMark::Within(at));
+            let span = key_span(text, &KeyPath::from_dotted("effect.0.formula"), FaultMark::Within(at));
             (span.start, text[span].to_owned())
         };
         assert_eq!(marked("[[effect]]\nformula = \"é = c * x\"\n", 8), (31, String::from("x")));
@@ -101,6 +101,6 @@ mod tests {
     fn falls_back_to_the_nearest_key_above() {
         assert_eq!(at("sensor.no-such-key", FaultMark::Value), "sensor");
         assert_eq!(at("nothing.here", FaultMark::Value), "seed = 1");
-        assert_eq!(span("", &KeyPath::default(), FaultMark::Name), 0..0);
+        assert_eq!(key_span("", &KeyPath::default(), FaultMark::Name), 0..0);
     }
 }

@@ -47,9 +47,9 @@ impl Procedure {
     pub fn id(&self) -> &'static str {
         match self {
             Self::Identify { identifier, .. } => identifier.id(),
-            Self::Trace(_) => TRACE,
+            Self::Trace(_) => TRACE_ID,
             Self::OutsideEstimates(_) => outside_estimates::METHOD_ID,
-            Self::StraightOn => STRAIGHT_ON,
+            Self::StraightOn => STRAIGHT_ON_ID,
         }
     }
 
@@ -87,10 +87,10 @@ pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) 
 }
 
 /// Method id of a trace.
-pub const TRACE: &str = "trace";
+pub const TRACE_ID: &str = "trace";
 
 /// Method id of the null model, a ship that keeps her heading.
-pub const STRAIGHT_ON: &str = "straight-on";
+pub const STRAIGHT_ON_ID: &str = "straight-on";
 
 /// Label and id of a method.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -220,7 +220,7 @@ fn tracing(wire: &TraceWire, formulas: Vec<Arc<Formula>>) -> Result<::trace::Set
     let TraceWire { rule, probability, ref menu, monomials, heading_alone, .. } = *wire;
     let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), selection_from)?;
     let selection = Selection { formulas, ..selection };
-    if monomials > empirical::all().len() {
+    if monomials > empirical::all_monomials().len() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
     let usual = ::trace::Settings { is_thorough: false, ..::trace::Settings::default() };
@@ -282,6 +282,6 @@ mod tests {
         refused("gain = 6.0", "gain");
         refused("menu = [\"wind\"]", "wind");
         refused("monomials = 60", "59");
-        assert_eq!(empirical::all().len(), 59);
+        assert_eq!(empirical::all_monomials().len(), 59);
     }
 }

@@ -47,12 +47,12 @@ mod wire;
 
 pub use cell::{DesignCell, InvalidSample, SampledSpecification};
 pub use checked::Scenario;
-pub use identity::hex;
-pub use method::{Method, MethodName, Procedure, STRAIGHT_ON, TRACE};
+pub use identity::hex_digits;
+pub use method::{Method, MethodName, Procedure, STRAIGHT_ON_ID, TRACE_ID};
 pub use outside_estimates::OutsideEstimates;
 pub use physics::MissingPhysics;
 pub use predictions::PredictionSettings;
 
 pub use prose::{Highlight, MarkedValue, Presentation, Prose, Published};
-pub use specification::{HULL, Specification};
+pub use specification::{HULL_ID, Specification};
 pub use stop::{NomotoIndex, StopFigure, StopRule};

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use report::markdown::is_layout;
+use report::markdown::is_line_break_or_tab;
 use report::printable::is_printable;
 
 use crate::failure::Failure;
@@ -73,7 +73,9 @@ pub fn check_file_name(text: &str) -> Result<(), InvalidText> {
 
 /// Checks prose: any number of printable lines.
 pub fn check_prose(text: &str) -> Result<(), InvalidText> {
-    text.chars().find(|&c| !is_printable(c) && !is_layout(c)).map_or(Ok(()), |c| Err(InvalidText::Unprintable(c)))
+    text.chars()
+        .find(|&c| !is_printable(c) && !is_line_break_or_tab(c))
+        .map_or(Ok(()), |c| Err(InvalidText::Unprintable(c)))
 }
 
 /// Study name from a file name, without the extension.

@@ -61,7 +61,7 @@ pub fn refuse_unknown(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], table
 /// Refuses a table without a required number.
 pub fn refuse_incomplete(numbers: &BTreeMap<String, f64>, keys: &[NumberKey], table: &KeyPath) -> Result<(), KeyFault> {
     let missing = keys.iter().find(|number| number.is_required && !numbers.contains_key(number.key));
-    missing.map_or(Ok(()), |number| Err(reader::missing(table, number.key)))
+    missing.map_or(Ok(()), |number| Err(reader::missing_key(table, number.key)))
 }
 
 /// Adds the defaults of missing keys.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::scenario::problem::{KeyFault, KeyPath, suggestion};
 
 /// Keys of [`PhysicsWire`], which stand beside the constants of a formula.
-pub const KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
+pub const PHYSICS_KEYS: [&str; 4] = ["stands-for", "depends-on", "changes-s", "period-s"];
 
 /// Correct findings for a formula, as written in its entry.
 #[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
@@ -110,7 +110,7 @@ impl MissingPhysics {
 
 /// Identifiers of the listed effects.
 fn effect_ids() -> Vec<&'static str> {
-    let mut ids: Vec<&str> = ship::effects::all().iter().map(|effect| effect.id()).collect();
+    let mut ids: Vec<&str> = ship::effects::all_effects().iter().map(|effect| effect.id()).collect();
     ids.dedup();
     ids
 }

@@ -114,7 +114,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
 }
 
 /// Fault of a table that lacks a key.
-pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
+pub fn missing_key(table: &KeyPath, name: &'static str) -> KeyFault {
     ReadFault::MissingKey(name).at(table.clone(), None)
 }
 

@@ -135,9 +135,9 @@ impl Default for JudgeWire {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordSplit {
     /// Indices of the records fitted together.
-    pub fitted: Vec<usize>,
+    pub fitted_indices: Vec<usize>,
     /// Index of the validation record; `None` without validation.
-    pub validation: Option<usize>,
+    pub validation_index: Option<usize>,
 }
 
 /// Records of a cell, with the splits of the trials.
@@ -147,7 +147,7 @@ pub struct RecordSet {
     /// Splits of the trials; equal fits are adjacent.
     pub splits: Vec<RecordSplit>,
     /// Absent files among those listed with a SHA-256, with the reason.
-    pub absent: Vec<(String, String)>,
+    pub absent_files: Vec<(String, String)>,
     /// Warnings of the reader, one line each.
     pub warnings: Vec<String>,
     /// SHA-256 of all files and their sidecars, hexadecimal.
@@ -182,7 +182,7 @@ impl RecordSet {
                 let problem = format!("{}: {problem}", path.display());
                 KeyFault::value(key.child("files"), problem, "expected a record that can be read", advice)
             };
-            let read = trial::read_with(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
+            let read = trial::read_with_sidecar(path, sidecar.as_deref()).map_err(|error| refuse(&error))?;
             if let RecordOrigin::Measured { sha256, .. } = read.trial.origin() {
                 digest.update(sha256);
             }
@@ -205,8 +205,8 @@ impl RecordSet {
         let stem = |file: &str| Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let absent_names: Vec<String> = absent.iter().map(|(file, _)| stem(file)).collect();
         let splits = splits(&wire.judge, &names, &absent_names, &key.child("judge"))?;
-        let (sha256, without_spikes) = (identity::hex(&digest.finalize()), OnceLock::new());
-        Ok(Self { trials, splits, absent, warnings, sha256, without_spikes })
+        let (sha256, without_spikes) = (identity::hex_digits(&digest.finalize()), OnceLock::new());
+        Ok(Self { trials, splits, absent_files: absent, warnings, sha256, without_spikes })
     }
 }
 
@@ -278,7 +278,7 @@ fn files(wire: &RecordsWire, folder: &Path, records: &KeyPath) -> Result<ListedF
 fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, String> {
     let path = matching(folder, file).into_iter().next().ok_or("there is no such file")?;
     let bytes = disk::read(&path, RECORD_FILE.max_bytes).map_err(|error| format!("it cannot be read: {error}"))?;
-    let hash = identity::hex(&Sha256::digest(bytes.unwrap_or_default()));
+    let hash = identity::hex_digits(&Sha256::digest(bytes.unwrap_or_default()));
     if hash == sha256 {
         return Ok(path);
     }
@@ -289,7 +289,7 @@ fn verified_path(folder: &Path, file: &str, sha256: &str) -> Result<PathBuf, Str
 fn splits(judge: &JudgeWire, names: &[&str], absent: &[String], key: &KeyPath) -> Result<Vec<RecordSplit>, KeyFault> {
     let all = 0..names.len();
     let without = |excluded: usize| all.clone().filter(|place| *place != excluded).collect::<Vec<usize>>();
-    let split = |fitted: Vec<usize>, judge| RecordSplit { fitted, validation: judge };
+    let split = |fitted: Vec<usize>, judge| RecordSplit { fitted_indices: fitted, validation_index: judge };
     let splits: Vec<RecordSplit> = match judge {
         JudgeWire::Rule(HoldOutRule::None) => all.map(|record| split(vec![record], None)).collect(),
         JudgeWire::Rule(HoldOutRule::Others) => {
@@ -382,7 +382,7 @@ fn fits(name: &str, pattern: &str) -> bool {
 pub(crate) fn design_sha256<'a>(design: &Table, sets: impl Iterator<Item = &'a RecordSet>) -> String {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     sets.for_each(|set| digest.update(&set.sha256));
-    identity::hex(&digest.finalize())
+    identity::hex_digits(&digest.finalize())
 }
 
 #[cfg(test)]
@@ -410,7 +410,7 @@ mod tests {
         let key = KeyPath::from_dotted("records.judge");
         let of = |judge: &JudgeWire| -> Vec<(Vec<usize>, Option<usize>)> {
             let all = splits(judge, &names, &[], &key).unwrap_or_else(|fault| panic!("{}", fault.problem));
-            all.into_iter().map(|split| (split.fitted, split.validation)).collect()
+            all.into_iter().map(|split| (split.fitted_indices, split.validation_index)).collect()
         };
         let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)].map(|(fit, judge)| (vec![fit], Some(judge)));
         assert_eq!(of(&JudgeWire::default()), pairs);

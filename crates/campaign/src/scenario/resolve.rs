@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ::ship::ships::ShipModel;
-use ::ship::{Particulars, Regressor, Ship, ShortNumber};
+use ::ship::{Particulars, RegressorChannel, Ship, ShortNumber};
 use simulate::motion::{PlanarModel, PlanarShip};
 use simulate::{Disturbances, Manoeuvre, Recording, Sensors, SimulatedShip, Simulation};
 
 use crate::scenario::problem::{KeyFault, KeyPath};
-use crate::scenario::specification::{HULL, Specification};
+use crate::scenario::specification::{HULL_ID, Specification};
 use crate::scenario::wire::{FurtherWire, ScenarioWire};
 use crate::scenario::{effect, ship};
 
@@ -52,15 +52,27 @@ pub fn trial_specification(wire: &ScenarioWire, name: &str, folder: &Path) -> Re
         ShipModel::Hull(_) => None,
     };
     let (truth, missing, stated) = (ship.first_order(), missing(&ship, wire), effect::stated_physics(&wire.effect)?);
-    Ok(Specification { further: further_records, validation, truth, base, missing, stated, simulation })
+    Ok(Specification {
+        further_simulations: further_records,
+        validation,
+        true_response: truth,
+        base_response: base,
+        missing_effects: missing,
+        stated_physics: stated,
+        simulation,
+    })
 }
 
 /// Channels absent from the trials of a scenario.
-fn lacking(wire: &ScenarioWire) -> Vec<Regressor> {
+fn lacking(wire: &ScenarioWire) -> Vec<RegressorChannel> {
     let moves = wire.speed_and_sway.is_some();
     let blows = wire.disturbance.wind.is_some_and(|wind| wind.speed.is_some());
-    let has =
-        [(Regressor::Sway, moves), (Regressor::Speed, moves), (Regressor::Wind, blows), (Regressor::Propeller, false)];
+    let has = [
+        (RegressorChannel::Sway, moves),
+        (RegressorChannel::Speed, moves),
+        (RegressorChannel::Wind, blows),
+        (RegressorChannel::Propeller, false),
+    ];
     has.into_iter().filter(|(_, is_there)| !is_there).map(|(channel, _)| channel).collect()
 }
 
@@ -88,16 +100,16 @@ fn simulated_ship(ship: &Ship, wire: &ScenarioWire) -> Result<SimulatedShip, Key
 }
 
 /// Identifiers of the effects missing from a first-order base in a trial: effects of the ship, and effects equal to a
-/// disturbance or to a delay or lag of the heading sensor; [`HULL`] for a hull.
+/// disturbance or to a delay or lag of the heading sensor; [`HULL_ID`] for a hull.
 fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let mut missing: Vec<String> = match &ship.model {
         ShipModel::Response(response) => response.model().effects().iter().map(|effect| effect.id().into()).collect(),
-        ShipModel::Hull(_) => vec![HULL.to_owned()],
+        ShipModel::Hull(_) => vec![HULL_ID.to_owned()],
     };
     let sea = &wire.disturbance;
     let disturbances = [
         (sea.wind.is_some(), "wind_moment"),
-        (sea.drift != 0.0, "moment_drift"),
+        (sea.moment_drift != 0.0, "moment_drift"),
         (sea.squall.is_some(), "transient_disturbance"),
         (sea.waves.is_some(), "wave_yaw"),
         (wire.sensor.heading_delay != 0.0 || wire.sensor.heading_lag != 0.0, "steering_lag"),
@@ -109,7 +121,7 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 
 /// Default recording of a validation.
 pub fn validation_recording(trial: &Recording) -> Recording {
-    Recording { duration: trial.duration, ..Recording::every(trial.period) }
+    Recording { duration: trial.duration, ..Recording::every(trial.sampling_period) }
 }
 
 /// Simulation of a further manoeuvre of the ship; `record` has the settings shared with the first one, which are

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::scenario::keys::{KeyDefault, ScenarioKey, keys};
+use crate::scenario::keys::{KeyDefault, ScenarioKey, scenario_keys};
 use crate::scenario::method::Method;
 use crate::scenario::problem::KeyFault;
 use crate::scenario::resolve::validation_recording;
@@ -18,7 +18,7 @@ pub fn scenario_toml(document: &Table, methods: &[Method]) -> Result<String, Key
     ship::fill_defaults(&mut wire.ship);
     let ship = effect::with_effects(ship::build(&wire.ship)?, &wire.effect, &[])?;
     wire.steering_gear = wire.steering_gear.with_ship_defaults(&ship);
-    wire.steering_gear.rate.get_or_insert(f64::INFINITY);
+    wire.steering_gear.rudder_rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
     }
@@ -29,7 +29,7 @@ pub fn scenario_toml(document: &Table, methods: &[Method]) -> Result<String, Key
         validation.recording.get_or_insert(validation_recording(&wire.recording));
     }
     let complete = Table::try_from(&wire).expect("what was read can be written");
-    let mut lines = ResolvedText { keys: keys(), text: String::new() };
+    let mut lines = ResolvedText { keys: scenario_keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));
     Ok(lines.text.trim_start().to_owned())
 }
@@ -170,7 +170,7 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
             // An omitted rate and an infinite rate move the rudder alike; only the omitted one gives a warning.
             let same = |simulation: &Simulation| {
                 let mut simulation = simulation.clone();
-                simulation.gear.rate = Some(simulation.gear.largest_rate());
+                simulation.gear.rudder_rate = Some(simulation.gear.largest_rate());
                 format!("{simulation:?}")
             };
             assert_eq!(same(&left.simulation), same(&right.simulation));
@@ -190,7 +190,7 @@ points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-
         assert_eq!(with("[steering-gear]\nrate-deg-s = inf").len(), 2, "an infinite rate is meant");
         assert_eq!(with("[helmsman]\nreaction-time-s = 0.5\n[sensor]\nheading-quantum-deg = 0.1").len(), 1);
         let hull = |id: &str| BARE.replace("first-order", id).replace("K-per-s = 0.1\nT-s = 16.3\n", "");
-        for ship in ship::ships::all().into_iter().filter(|ship| ship.rudder_rate.is_some()) {
+        for ship in ship::ships::all_ships().into_iter().filter(|ship| ship.rudder_rate.is_some()) {
             let assumptions = defaults(&hull(&ship.id));
             assert!(assumptions.iter().all(|(assumption, _)| *assumption != Assumption::InstantRudder), "{}", ship.id);
         }

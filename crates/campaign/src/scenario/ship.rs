@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use ::ship::angle::{KNOT, from_deg};
 use ::ship::effects::Parameter;
-use ::ship::linear::SecondOrderIndices;
+use ::ship::linear::SecondOrderNomotoIndices;
 use ::ship::ships::{self, user, user::HullError, user::ShipError};
 use ::ship::vessel::prior::{HullParticulars, PARTICULARS, Particular, ParticularsError};
 use ::ship::{Particulars, Ship, ShortNumber};
@@ -57,7 +57,7 @@ static HULL_NUMBERS: LazyLock<Vec<NumberKey>> = LazyLock::new(|| {
 });
 
 /// Ships of the registry.
-static REGISTRY: LazyLock<Vec<Ship>> = LazyLock::new(ships::all);
+static REGISTRY: LazyLock<Vec<Ship>> = LazyLock::new(ships::all_ships);
 
 /// Keys of a user's ship; empty for a ship of the registry.
 fn numbers_of(id: &str) -> &'static [NumberKey] {
@@ -143,7 +143,7 @@ impl UserShip<'_> {
             _ => {
                 let [K, T1, T2, T3] =
                     ["K-per-s", "T1-s", "T2-s", "T3-s"].map(|key| self.number(key).unwrap_or(f64::NAN));
-                user::second_order(SecondOrderIndices { K, T1, T2, T3 }, bias, particulars)
+                user::second_order(SecondOrderNomotoIndices { K, T1, T2, T3 }, bias, particulars)
             }
         };
         ship.map_err(|error| self.refused(bias_deg, &error))
@@ -164,10 +164,10 @@ impl UserShip<'_> {
                 "expected `length-m` and `speed-kn` as well",
                 "add both, or give `K-per-s` and `T-s`",
             )),
-            ([Some(_), None, None, None], _) => Err(reader::missing(key, "T-s")),
-            ([None, _, None, None], _) => Err(reader::missing(key, "K-per-s")),
-            ([None, None, Some(_), None], _) => Err(reader::missing(key, "T-prime")),
-            ([None, None, None, Some(_)], _) => Err(reader::missing(key, "K-prime")),
+            ([Some(_), None, None, None], _) => Err(reader::missing_key(key, "T-s")),
+            ([None, _, None, None], _) => Err(reader::missing_key(key, "K-per-s")),
+            ([None, None, Some(_), None], _) => Err(reader::missing_key(key, "T-prime")),
+            ([None, None, None, Some(_)], _) => Err(reader::missing_key(key, "K-prime")),
             _ => Err(KeyFault::name(
                 key.clone(),
                 format!("`{key}` gives K and T both with and without dimension"),
@@ -221,7 +221,7 @@ impl UserShip<'_> {
 /// JSON schema of `[ship]`: one key, the id of a registered ship or of a user's ship with its numbers.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
     let user_ships = [
-        (FIRST_ORDER, "A ship of your own by K and T"),
+        (FIRST_ORDER, "A ship of your own: K-per-s and T-s, or K-prime and T-prime"),
         (SECOND_ORDER, "A ship of your own by K, T1, T2, T3"),
         (USER_HULL, "A hull of your own by her particulars"),
     ];

@@ -11,21 +11,21 @@ pub struct Specification {
     /// Simulation of the record.
     pub simulation: Simulation,
     /// Further records of the same ship, identified together with the first.
-    pub further: Vec<Simulation>,
+    pub further_simulations: Vec<Simulation>,
     /// Validation manoeuvre of the same ship, undisturbed and without measurement noise; `None` without validation.
     pub validation: Option<Simulation>,
     /// True response of a first-order ship; `None` for any other ship.
-    pub truth: Option<FirstOrder>,
+    pub true_response: Option<FirstOrder>,
     /// First-order base of a response ship, with or without effects; `None` for a hull.
-    pub base: Option<FirstOrder>,
-    /// Identifiers of the effects missing from a first-order base in a trial; [`HULL`] for a hull.
-    pub missing: Vec<String>,
+    pub base_response: Option<FirstOrder>,
+    /// Identifiers of the effects missing from a first-order base in a trial; [`HULL_ID`] for a hull.
+    pub missing_effects: Vec<String>,
     /// Missing physics as stated with a formula; `None` without such a statement.
-    pub stated: Option<MissingPhysics>,
+    pub stated_physics: Option<MissingPhysics>,
 }
 
 /// Identifier for the unlisted physics of a hull.
-pub const HULL: &str = "hull";
+pub const HULL_ID: &str = "hull";
 
 impl Specification {
     /// Simulation of every record of a trial, each with its random key.
@@ -34,6 +34,9 @@ impl Specification {
         /// and Flood 2014). It is odd, so no two of 2⁶⁴ records share a seed.
         const NEXT: u64 = 0x9E37_79B9_7F4A_7C15;
         let key = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
-        std::iter::once(&self.simulation).chain(&self.further).enumerate().map(move |(number, run)| (run, key(number)))
+        std::iter::once(&self.simulation)
+            .chain(&self.further_simulations)
+            .enumerate()
+            .map(move |(number, run)| (run, key(number)))
     }
 }

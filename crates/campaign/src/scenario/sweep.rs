@@ -333,15 +333,15 @@ fn trim(number: f64) -> String {
 }
 
 /// Checked axes of a design. Fails for the first invalid axis.
-pub fn axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
+pub fn resolve_axes(wires: &[AxisWire]) -> Result<Vec<SweepAxis>, KeyFault> {
     wires.iter().enumerate().map(|(index, axis)| axis.resolve(index)).collect()
 }
 
 /// All combinations of points, first axis slowest; without axes one empty combination.
 ///
 /// Fails for too many combinations, and if two axes change the same key.
-pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
-    limits::check_count("sweep", axes.len(), limits::MAX_SWEEPS)?;
+pub fn combine_points(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
+    limits::check_count("sweep", axes.len(), limits::MAX_SWEEP_ENTRIES)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MAX_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
@@ -378,7 +378,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
 /// Sets a key in a document and creates missing tables; numbers in the path are list indices from 0.
 ///
 /// Fails if the path passes through a value, or beyond the end of a list.
-pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
+pub fn set_key(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
     let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
     let mut parts = key.names().iter().peekable();

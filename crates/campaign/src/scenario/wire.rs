@@ -27,14 +27,14 @@ pub struct ScenarioWire {
     /// Result in one sentence.
     #[serde(default)]
     pub finding: String,
-    /// Key of every random number.
+    /// Seed of all random numbers; another seed gives other trials.
     pub seed: u64,
     /// Number of trials per cell.
     #[serde(default = "one_replicate")]
     pub replicates: u64,
-    /// Condition that ends a cell.
+    /// Condition that ends a cell before `replicates` trials.
     pub stop: Option<StopRule>,
-    /// One key: the id of a ship of the registry, `first-order`, `second-order` or `hull`.
+    /// Exactly one key: the id of a ship (`study list ships`), `first-order`, `second-order` or `hull`.
     #[schemars(schema_with = "ship::schema")]
     pub ship: NamedNumbers,
     /// Effects missing from a first-order ship; for response models only.

@@ -8,7 +8,7 @@ use super::statistic::Statistic;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DetectionCount {
     /// Size, above zero.
-    pub size: f64,
+    pub effect_size: f64,
     /// Number of trials.
     pub trials: u64,
     /// Number of trials with a detection.
@@ -35,7 +35,7 @@ const HALVINGS: usize = 60;
 /// The likelihood is maximised with a ridge on the slope. Values beyond the tried sizes are extrapolated. `None` for
 /// fewer than two sizes.
 pub fn detection_size(tried: &[DetectionCount], share: f64) -> Option<Statistic> {
-    let logs = || tried.iter().filter(|level| level.trials > 0).map(|level| level.size.ln());
+    let logs = || tried.iter().filter(|level| level.trials > 0).map(|level| level.effect_size.ln());
     let ends = [logs().fold(f64::INFINITY, f64::min), logs().fold(f64::NEG_INFINITY, f64::max)];
     if ends[0] >= ends[1] {
         return None;
@@ -69,7 +69,7 @@ impl ShareLine<'_> {
     /// Per size: log size minus `place`, trials, detections, and logit of the detection probability.
     fn points(&self, place: f64, slope: f64) -> impl Iterator<Item = [f64; 4]> {
         self.tried.iter().map(move |level| {
-            let after = level.size.ln() - place;
+            let after = level.effect_size.ln() - place;
             [after, level.trials as f64, level.detections as f64, self.logit + slope * after]
         })
     }
@@ -114,7 +114,7 @@ mod tests {
     fn tried(seen: [u64; 5], trials: u64) -> Vec<DetectionCount> {
         seen.iter()
             .zip([0.25, 0.5, 1.0, 2.0, 4.0])
-            .map(|(&seen, size)| DetectionCount { size, trials, detections: seen })
+            .map(|(&seen, size)| DetectionCount { effect_size: size, trials, detections: seen })
             .collect()
     }
 

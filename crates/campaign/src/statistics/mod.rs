@@ -18,4 +18,4 @@ pub use logistic::{DetectionCount, detection_size};
 pub use moments::Moments;
 pub use sample::{ErrorSample, OrderedSample};
 pub use statistic::{MIN_INTERVAL_VALUES, MIN_SUMMARISED_VALUES, NORMAL_QUANTILE_95, Statistic, wilson_share};
-pub use sums::{BATCH_COUNT, BatchSums, ErrorSums, PairSums};
+pub use sums::{BATCH_COUNT, BatchSums, ErrorSums, PairedErrorSums};

@@ -5,21 +5,28 @@
 pub struct Moments {
     /// Number of values.
     pub count: f64,
-    /// Mean.
+    /// Arithmetic mean of the values, in their unit; 0 without values.
     pub mean: f64,
     /// Σ (x − mean)².
-    pub second: f64,
+    pub squared_deviation_sum: f64,
     /// Σ (x − mean)³.
-    pub third: f64,
+    pub cubed_deviation_sum: f64,
     /// Σ (x − mean)⁴.
-    pub fourth: f64,
+    pub fourth_power_sum: f64,
     /// Minimum value; infinite without values.
-    pub smallest: f64,
+    pub min_value: f64,
 }
 
 impl Default for Moments {
     fn default() -> Self {
-        Self { count: 0.0, mean: 0.0, second: 0.0, third: 0.0, fourth: 0.0, smallest: f64::INFINITY }
+        Self {
+            count: 0.0,
+            mean: 0.0,
+            squared_deviation_sum: 0.0,
+            cubed_deviation_sum: 0.0,
+            fourth_power_sum: 0.0,
+            min_value: f64::INFINITY,
+        }
     }
 }
 
@@ -41,11 +48,12 @@ impl Moments {
         let step = delta / n;
         let term = delta * step * before;
         self.mean += step;
-        self.fourth +=
-            term * step * step * (n * n - 3.0 * n + 3.0) + 6.0 * step * step * self.second - 4.0 * step * self.third;
-        self.third += term * step * (n - 2.0) - 3.0 * step * self.second;
-        self.second += term;
-        self.smallest = self.smallest.min(x);
+        self.fourth_power_sum += term * step * step * (n * n - 3.0 * n + 3.0)
+            + 6.0 * step * step * self.squared_deviation_sum
+            - 4.0 * step * self.cubed_deviation_sum;
+        self.cubed_deviation_sum += term * step * (n - 2.0) - 3.0 * step * self.squared_deviation_sum;
+        self.squared_deviation_sum += term;
+        self.min_value = self.min_value.min(x);
     }
 
     /// Adds the moments of other values.
@@ -58,21 +66,22 @@ impl Moments {
         let delta = other.mean - self.mean;
         let (p, q) = (a / n, b / n);
         let square = delta * delta;
-        self.fourth += other.fourth
+        self.fourth_power_sum += other.fourth_power_sum
             + square * square * a * q * (a * a - a * b + b * b) / (n * n)
-            + 6.0 * square * (p * p * other.second + q * q * self.second)
-            + 4.0 * delta * (p * other.third - q * self.third);
-        self.third +=
-            other.third + square * delta * a * q * (a - b) / n + 3.0 * delta * (p * other.second - q * self.second);
+            + 6.0 * square * (p * p * other.squared_deviation_sum + q * q * self.squared_deviation_sum)
+            + 4.0 * delta * (p * other.cubed_deviation_sum - q * self.cubed_deviation_sum);
+        self.cubed_deviation_sum += other.cubed_deviation_sum
+            + square * delta * a * q * (a - b) / n
+            + 3.0 * delta * (p * other.squared_deviation_sum - q * self.squared_deviation_sum);
         self.mean += delta * b / n;
-        self.second += other.second + square * a * b / n;
+        self.squared_deviation_sum += other.squared_deviation_sum + square * a * b / n;
         self.count = n;
-        self.smallest = self.smallest.min(other.smallest);
+        self.min_value = self.min_value.min(other.min_value);
     }
 
     /// Standard deviation; 0 below two values.
     pub fn sd(&self) -> f64 {
-        if self.count > 1.0 { (self.second / (self.count - 1.0)).sqrt() } else { 0.0 }
+        if self.count > 1.0 { (self.squared_deviation_sum / (self.count - 1.0)).sqrt() } else { 0.0 }
     }
 }
 
@@ -93,7 +102,13 @@ mod tests {
         joined.merge(&of(&values[2..]));
         let central = |p: i32| values.iter().map(|value| (value - 6.0).powi(p)).sum::<f64>();
         for moments in [joined, of(&values)] {
-            let actual = [moments.mean, moments.second, moments.third, moments.fourth, moments.smallest];
+            let actual = [
+                moments.mean,
+                moments.squared_deviation_sum,
+                moments.cubed_deviation_sum,
+                moments.fourth_power_sum,
+                moments.min_value,
+            ];
             let expected = [6.0, central(2), central(3), central(4), 3.0];
             assert!(actual.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-10), "{actual:?}");
             assert!((moments.sd() - 8.5_f64.sqrt()).abs() < 1e-12);

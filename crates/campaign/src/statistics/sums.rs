@@ -6,14 +6,15 @@ use std::iter::Sum;
 /// Number of batches of the bootstrap.
 pub const BATCH_COUNT: usize = 256;
 
-/// Sums over the values of one batch.
+/// Two sums over the values or pairs of one batch; their meaning depends on the owner, [`ErrorSums`] or
+/// [`PairedErrorSums`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BatchSums {
-    /// Number of values.
+    /// Number of values, or of pairs.
     pub count: f64,
-    /// Sum of the differences of the values from a common shift.
+    /// Sum of the differences of the values from a common shift; of pairs, the sum of the squared errors of the method.
     pub first: f64,
-    /// Sum of the squares of these differences.
+    /// Sum of the squares of these differences; of pairs, the sum of the squared errors of the reference.
     pub second: f64,
 }
 
@@ -80,23 +81,23 @@ impl ErrorSums {
     }
 }
 
-/// Batch sums of squared errors of a method and of the reference, on trials with both: [`BatchSums::first`] is the sum
-/// of the method, [`BatchSums::second`] the sum of the reference.
+/// Sums, batch by batch, over the trials with an estimate of both methods: of the squared errors of the method, in
+/// [`BatchSums::first`], and of those of the reference method, in [`BatchSums::second`].
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct PairSums {
+pub struct PairedErrorSums {
     batches: Vec<BatchSums>,
     /// Number of trials in which the error of the method is smaller; ties count half.
-    pub smaller: f64,
+    pub smaller_error_count: f64,
 }
 
-impl PairSums {
+impl PairedErrorSums {
     /// Adds the errors of the method and of the reference in a replicate.
     pub fn add(&mut self, replicate: u64, error: f64, reference: f64) {
         let batch = batch_of(&mut self.batches, replicate);
         batch.count += 1.0;
         batch.first += error * error;
         batch.second += reference * reference;
-        self.smaller += match error.abs().total_cmp(&reference.abs()) {
+        self.smaller_error_count += match error.abs().total_cmp(&reference.abs()) {
             std::cmp::Ordering::Less => 1.0,
             std::cmp::Ordering::Equal => 0.5,
             std::cmp::Ordering::Greater => 0.0,
@@ -146,12 +147,12 @@ mod tests {
 
     #[test]
     fn pairs_compare_root_mean_squares() {
-        let mut pairs = PairSums::default();
+        let mut pairs = PairedErrorSums::default();
         [(3.0, 1.0), (-3.0, 1.0), (3.0, -3.0)].iter().zip(0..).for_each(|(&(a, b), r)| pairs.add(r, a, b));
         let total = total(pairs.batches());
         let rms = (11.0_f64 / 3.0).sqrt();
-        assert!((PairSums::rms_difference(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
-        assert!((PairSums::rms_ratio(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
-        assert_eq!(pairs.smaller, 0.5);
+        assert!((PairedErrorSums::rms_difference(&total).expect("some") - (3.0 - rms)).abs() < 1e-12);
+        assert!((PairedErrorSums::rms_ratio(&total).expect("some") - 3.0 / rms).abs() < 1e-12);
+        assert_eq!(pairs.smaller_error_count, 0.5);
     }
 }

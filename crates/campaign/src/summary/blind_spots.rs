@@ -27,7 +27,7 @@ pub struct BlindSpot {
 impl BlindSpot {
     /// Minimum and maximum tried size.
     pub fn size_range(&self) -> [f64; 2] {
-        let sizes = || self.counts.iter().map(|level| level.size);
+        let sizes = || self.counts.iter().map(|level| level.effect_size);
         [sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max)]
     }
 }
@@ -39,7 +39,7 @@ pub fn effect_size_axis(design: &Design) -> Option<usize> {
         design
             .cells
             .iter()
-            .any(|cell| !cell.missing.is_empty() && parts(&cell.labels[*axis], cell.values[*axis]).is_some())
+            .any(|cell| !cell.missing_effects.is_empty() && parts(&cell.labels[*axis], cell.values[*axis]).is_some())
     };
     (0..design.axes.len()).find(has_size)
 }
@@ -47,13 +47,13 @@ pub fn effect_size_axis(design: &Design) -> Option<usize> {
 /// Blind spots in the order of the cells; empty for a study without sizes.
 pub fn blind_spots(lines: &[TraceSummary], design: &Design) -> Vec<BlindSpot> {
     let Some(axis) = effect_size_axis(design) else { return Vec::new() };
-    let sized = lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull()).filter_map(|line| {
+    let sized = lines.iter().filter(|line| line.missing_effects.len() == 1 && !line.is_hull()).filter_map(|line| {
         let cell = &design.cells[line.cell];
         let (effect, size, unit) = parts(&cell.labels[axis], cell.values[axis])?;
         let mut place = cell.labels.clone();
         place.remove(axis);
-        let level = DetectionCount { size, trials: line.trials, detections: line.all_named };
-        Some(((effect, unit, place, line.method, &line.missing), level))
+        let level = DetectionCount { effect_size: size, trials: line.trials, detections: line.all_named_count };
+        Some(((effect, unit, place, line.method, &line.missing_effects), level))
     });
     let groups = grouped(sized, |(kind, _)| kind.clone());
     let spot = |((effect, unit, place, method, _), levels): (_, Vec<(_, DetectionCount)>)| {
@@ -99,7 +99,7 @@ mod tests {
             let cell = |size: &f64, ship: &str| CellFacts {
                 labels: vec![ship.into(), format!("{label} {size}°")],
                 values: vec![None, Some(*size)],
-                missing: vec![id.to_owned()],
+                missing_effects: vec![id.to_owned()],
                 ..CellFacts::default()
             };
             sizes.iter().flat_map(|size| ["tanker", "ferry"].map(|ship| cell(size, ship))).collect::<Vec<_>>()
@@ -114,9 +114,9 @@ mod tests {
             nothing.into_iter().chain(cells("wind", "wind_moment")).chain(cells("waves", "wave_yaw")).collect();
         let design = Design { axes, cells, ..Design::default() };
         let line = |cell: usize| TraceSummary {
-            missing: design.cells[cell].missing.clone(),
+            missing_effects: design.cells[cell].missing_effects.clone(),
             trials: 40,
-            all_named: if (6..10).contains(&cell) { 40 } else { 0 },
+            all_named_count: if (6..10).contains(&cell) { 40 } else { 0 },
             cell,
             ..TraceSummary::default()
         };

@@ -88,7 +88,8 @@ pub struct MethodDetail {
     #[serde(rename = "violin_t")]
     pub t_errors: Option<ErrorDensity>,
     /// Errors of K and T together; `None` below ten pairs.
-    pub cloud: Option<JointErrors>,
+    #[serde(rename = "cloud")]
+    pub joint_errors: Option<JointErrors>,
 }
 
 /// Error distributions in one cell.

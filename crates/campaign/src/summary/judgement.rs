@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ::trace::Verdict;
+use ::trace::TraceVerdict;
 use serde::{Deserialize, Serialize};
 
 use crate::rows::{LocatedMoment, NamedEffect, TraceRow};
@@ -55,10 +55,10 @@ impl Judgement {
 
     /// Judgement of a trace of a ship with this missing physics.
     pub fn from_trace_row(answer: &TraceRow, physics: &MissingPhysics) -> Self {
-        if answer.named.is_empty() && answer.located.is_empty() {
+        if answer.named_effects.is_empty() && answer.located_moments.is_empty() {
             return match answer.verdict {
-                Verdict::Unexplained => Self::Unexplained,
-                Verdict::Disturbed => Self::Disturbed,
+                TraceVerdict::Unexplained => Self::Unexplained,
+                TraceVerdict::Disturbed => Self::Disturbed,
                 _ => Self::Clean,
             };
         }
@@ -82,7 +82,7 @@ impl Judgement {
     fn from_names(answer: &TraceRow, right: &[String]) -> Self {
         let is_right = |id: &str| right.iter().any(|effect| effect == id);
         let is_alias = |effect: &NamedEffect| right.iter().any(|id| effect.includes(id));
-        let TraceRow { named, located, .. } = answer;
+        let TraceRow { named_effects: named, located_moments: located, .. } = answer;
         let is_alternative = || located.iter().flat_map(|moment| &moment.alternatives).any(|id| is_right(id));
         match named.is_empty() {
             true if is_alternative() => Self::Alias,
@@ -95,14 +95,14 @@ impl Judgement {
 
     /// Judgement on a ship with a moment on no list, by the dependence of the moment and by its times, if any.
     fn from_moments(answer: &TraceRow, physics: &MissingPhysics) -> Self {
-        let mut of_ship = answer.named.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
+        let mut of_ship = answer.named_effects.iter().filter(|effect| !is_time_effect(&effect.id)).peekable();
         if of_ship.peek().is_some() {
             let is_alias = of_ship.all(|effect| effect.aliases.iter().any(|id| is_time_effect(id)));
             return if is_alias { Self::Alias } else { Self::Wrong };
         }
-        let is_placed = match answer.located.is_empty() {
-            true => answer.named.iter().all(|effect| effect.time_s.is_some_and(|time| is_near(time, physics))),
-            false => answer.located.iter().any(|moment| agrees_with(moment, physics)),
+        let is_placed = match answer.located_moments.is_empty() {
+            true => answer.named_effects.iter().all(|effect| effect.time_s.is_some_and(|time| is_near(time, physics))),
+            false => answer.located_moments.iter().any(|moment| agrees_with(moment, physics)),
         };
         if is_placed { Self::Located } else { Self::WrongMoment }
     }
@@ -174,7 +174,12 @@ mod tests {
         };
         let (named, located) = (names.iter().map(effect).collect(), located.into_iter().collect());
         Judgement::from_trace_row(
-            &TraceRow { verdict: Verdict::Traced, named, located, ..TraceRow::default() },
+            &TraceRow {
+                verdict: TraceVerdict::Traced,
+                named_effects: named,
+                located_moments: located,
+                ..TraceRow::default()
+            },
             physics,
         )
     }
@@ -195,7 +200,7 @@ mod tests {
         assert_eq!(judged(&[right, wrong], None, &physics), Wrong);
         assert_eq!([&physics, &other].map(|physics| judged(&[], shape(), physics)), [Alias, WrongMoment]);
         let silent = |verdict| Judgement::from_trace_row(&TraceRow { verdict, ..TraceRow::default() }, &physics);
-        let verdicts = [Verdict::Clean, Verdict::Unexplained, Verdict::Disturbed];
+        let verdicts = [TraceVerdict::Clean, TraceVerdict::Unexplained, TraceVerdict::Disturbed];
         assert_eq!(verdicts.map(silent), [Clean, Unexplained, Disturbed]);
         let nothing = [true, false].map(|disturbed| MissingPhysics::Nothing { disturbed });
         assert_eq!(judged(&[], shape(), &nothing[0]), Wrong);

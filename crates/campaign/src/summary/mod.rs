@@ -16,7 +16,7 @@ mod tracing;
 pub use blind_spots::{BlindSpot, blind_spots, effect_size_axis};
 pub use detail::{CellDetail, ErrorDensity, JointErrors, MethodDetail};
 pub use judgement::{Judgement, MAX_PERIOD_ERROR, MAX_TIME_ERROR_S};
-pub use performance::{Comparison, IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
+pub use performance::{ErrorComparison, IndexErrors, MethodPerformance, MethodSummary, ReferenceComparison, Summary};
 pub use predictions::{ConformalScaling, ImoDecisionTally, PredictionSummary};
 pub use records::{RecordSummary, record_summaries};
 pub use tally::{Tally, summarise};

@@ -40,7 +40,7 @@ pub struct IndexErrors {
     pub median_interval_width: Option<Statistic>,
     /// Share of estimates with an interval.
     #[serde(rename = "quoting")]
-    pub interval_share: Option<Statistic>,
+    pub share_with_interval: Option<Statistic>,
     /// Ratio of the standard deviation of the errors to the Cramér–Rao bound, of which the root mean square over trials
     /// is taken.
     pub sd_over_bound: Option<Statistic>,
@@ -48,11 +48,12 @@ pub struct IndexErrors {
 
 /// Performance of one method on a set of trials.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Performance {
+pub struct MethodPerformance {
     /// Number of trials run.
     pub trials: u64,
     /// Reasons for missing estimates, with counts, in order of first occurrence; at most 50.
-    pub failures: Vec<(String, u64)>,
+    #[serde(rename = "failures")]
+    pub failure_counts: Vec<(String, u64)>,
     /// Share of trials without an estimate.
     pub failure_rate: Option<Statistic>,
     /// Errors of K.
@@ -69,13 +70,14 @@ pub struct Performance {
     #[serde(rename = "high_validation_rmse_deg")]
     pub validation_rmse_p90_deg: Option<Statistic>,
     /// Mean number of model evaluations per estimate; `None` without an estimate.
-    pub evaluations: Option<f64>,
+    #[serde(rename = "evaluations")]
+    pub mean_evaluations: Option<f64>,
 }
 
-impl Performance {
+impl MethodPerformance {
     /// Number of failed trials.
     pub fn failed(&self) -> u64 {
-        self.failures.iter().map(|(_, count)| count).sum()
+        self.failure_counts.iter().map(|(_, count)| count).sum()
     }
 }
 
@@ -88,12 +90,12 @@ pub struct MethodSummary {
     pub method: usize,
     /// Performance of the method.
     #[serde(rename = "record")]
-    pub performance: Performance,
+    pub performance: MethodPerformance,
 }
 
 /// Comparison of one index of one method with the reference, on trials with an estimate of both.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
+pub struct ErrorComparison {
     /// Difference of the rms errors, %; negative if the method is better.
     pub rms_difference: Option<Statistic>,
     /// Ratio of the rms errors, method over reference.
@@ -113,9 +115,9 @@ pub struct ReferenceComparison {
     /// Number of trials with an estimate of both.
     pub trials: u64,
     /// Errors of K.
-    pub k: Comparison,
+    pub k: ErrorComparison,
     /// Errors of T.
-    pub t: Comparison,
+    pub t: ErrorComparison,
 }
 
 /// Summary of a study.
@@ -129,7 +131,7 @@ pub struct Summary {
     /// Index of the reference method.
     pub reference: usize,
     /// Performance per method, over all cells.
-    pub overall: Vec<Performance>,
+    pub overall: Vec<MethodPerformance>,
     /// Error distributions of the cells shown in detail.
     pub details: Vec<CellDetail>,
     /// Summaries of traces, by cell and method.
@@ -142,7 +144,7 @@ pub struct Summary {
 
 impl Summary {
     /// Performance of a method in a cell; `None` for a cell without rows.
-    pub fn performance(&self, cell: usize, method: usize) -> Option<&Performance> {
+    pub fn performance(&self, cell: usize, method: usize) -> Option<&MethodPerformance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
         Some(&self.methods[place].performance)

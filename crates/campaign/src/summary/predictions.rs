@@ -18,7 +18,8 @@ pub struct PredictionSummary {
     /// Index of the method.
     pub method: usize,
     /// Manoeuvre and characteristic, with the unit.
-    pub name: Box<str>,
+    #[serde(rename = "name")]
+    pub characteristic: Box<str>,
     /// Number of trials with the characteristic.
     pub trials: u64,
     /// IMO criterion of the characteristic, with the decisions on it; `None` for a characteristic without a limit.
@@ -124,33 +125,33 @@ impl PredictionSummary {
     }
 
     /// Mean error of the median, in the unit of the characteristic.
-    pub fn bias(&self) -> f64 {
+    pub fn median_bias(&self) -> f64 {
         self.mean(0)
     }
 
     /// Root mean square error of the median, in the unit of the characteristic.
-    pub fn rms(&self) -> f64 {
+    pub fn rms_error(&self) -> f64 {
         self.mean(1).sqrt()
     }
 
     /// Mean width of the 90 % interval, in the unit of the characteristic.
-    pub fn width(&self) -> f64 {
+    pub fn mean_interval_width(&self) -> f64 {
         self.mean(2)
     }
 
     /// Mean true value, in the unit of the characteristic.
-    pub fn truth(&self) -> f64 {
+    pub fn mean_truth(&self) -> f64 {
         self.mean(3)
     }
 
     /// Mean interval score, in the unit of the characteristic.
-    pub fn score(&self) -> f64 {
+    pub fn mean_interval_score(&self) -> f64 {
         self.mean_score(UNSCALED)
     }
 
     /// `value`, in the unit of the characteristic, over the absolute mean true value.
     pub fn relative_to_truth(&self, value: f64) -> f64 {
-        value / self.truth().abs()
+        value / self.mean_truth().abs()
     }
 
     fn share_inside(&self, place: usize) -> f64 {
@@ -164,8 +165,8 @@ impl PredictionSummary {
 
 /// Adds the predictions of a row; `length_over_speed` is L/V of the ship, s, on which IMO limits depend.
 pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow, length_over_speed: Option<f64>) {
-    for figure in row.predicted.iter().flatten() {
-        let at = lines.iter().position(|line| line.name == figure.name).unwrap_or_else(|| {
+    for figure in row.predictions.iter().flatten() {
+        let at = lines.iter().position(|line| line.characteristic == figure.name).unwrap_or_else(|| {
             let (cell, method, name) = (row.cell as usize, row.method, figure.name.clone());
             let limited = length_over_speed.and_then(|scale| imo_limit(&name, scale));
             let criterion = limited.map(|(name, limit)| ImoDecisionTally {
@@ -174,7 +175,14 @@ pub(super) fn add_predictions(lines: &mut Vec<PredictionSummary>, row: &StudyRow
                 ..ImoDecisionTally::default()
             });
             let scaled = vec![(0, 0.0); INTERVAL_SCALES.len()];
-            lines.push(PredictionSummary { cell, method, name, criterion, scaled, ..PredictionSummary::default() });
+            lines.push(PredictionSummary {
+                cell,
+                method,
+                characteristic: name,
+                criterion,
+                scaled,
+                ..PredictionSummary::default()
+            });
             lines.len() - 1
         });
         let line = &mut lines[at];
@@ -205,18 +213,18 @@ mod tests {
                 median: 100.0,
                 ci90: [98.0, 103.0],
             };
-            StudyRow { predicted: Some([figure].into()), ..StudyRow::default() }
+            StudyRow { predictions: Some([figure].into()), ..StudyRow::default() }
         };
         let mut lines = Vec::new();
         [99.0, 103.0, 97.0, 101.0].into_iter().for_each(|truth| add_predictions(&mut lines, &row(truth), None));
         add_predictions(&mut lines, &StudyRow::default(), None);
         let [first] = lines.try_into().expect("one figure");
         assert_eq!((first.trials, first.scaled[UNSCALED].0), (4, 3));
-        assert_eq!((first.bias(), first.width(), first.truth()), (0.0, 5.0, 100.0));
-        assert!((first.rms() - 5f64.sqrt()).abs() < 1e-12);
+        assert_eq!((first.median_bias(), first.mean_interval_width(), first.mean_truth()), (0.0, 5.0, 100.0));
+        assert!((first.rms_error() - 5f64.sqrt()).abs() < 1e-12);
         assert_eq!(first.coverage().expect("trials").value, 0.75);
         // Width 5 in every trial, and 20 times the 1 that the third lies below its interval.
-        assert!((first.score() - (5.0 + 20.0 / 4.0)).abs() < 1e-9);
+        assert!((first.mean_interval_score() - (5.0 + 20.0 / 4.0)).abs() < 1e-9);
     }
 
     /// Intervals of ±1 whose true values lie 2 off need twice the width; the ship with errors of 1 does not.
@@ -232,7 +240,7 @@ mod tests {
             let mut lines = Vec::new();
             for sign in [-1.0, 1.0] {
                 let predicted = Some([figure(sign * error)].into());
-                add_predictions(&mut lines, &StudyRow { predicted, ..StudyRow::default() }, None);
+                add_predictions(&mut lines, &StudyRow { predictions: predicted, ..StudyRow::default() }, None);
             }
             lines.remove(0)
         };
@@ -257,7 +265,7 @@ mod tests {
             let figure = PredictedCharacteristic { name, truth, median: 13.0, ci90 };
             add_predictions(
                 &mut lines,
-                &StudyRow { predicted: Some([figure].into()), ..StudyRow::default() },
+                &StudyRow { predictions: Some([figure].into()), ..StudyRow::default() },
                 Some(20.0),
             );
         }

@@ -73,7 +73,7 @@ fn summary(rows: &[StudyRow], design: &Design, cell: usize, method: usize) -> Re
         (method > 0).then(|| grouped(&mut pairs)).flatten()
     };
     let mut named: BTreeMap<String, usize> = BTreeMap::new();
-    for effect in fits.iter().filter_map(|row| row.traced.as_ref()).flat_map(|traced| &traced.named) {
+    for effect in fits.iter().filter_map(|row| row.traced.as_ref()).flat_map(|traced| &traced.named_effects) {
         *named.entry(effect.id.to_string()).or_default() += 1;
     }
     RecordSummary {
@@ -124,7 +124,7 @@ mod tests {
         let method = |label: &str| MethodName { label: label.into(), id: label.into() };
         Design {
             methods: vec![method("output-error"), method("trace")],
-            cells: vec![CellFacts { records: records.collect(), trials: 0..42, ..CellFacts::default() }],
+            cells: vec![CellFacts { records: records.collect(), stored_replicates: 0..42, ..CellFacts::default() }],
             ..Design::default()
         }
     }
@@ -142,7 +142,7 @@ mod tests {
                 validation_rmse_deg: Some(error),
                 ..StudyRow::default()
             };
-            let traced = TraceRow { named: vec![named.clone()], ..TraceRow::default() };
+            let traced = TraceRow { named_effects: vec![named.clone()], ..TraceRow::default() };
             [row(0, error), StudyRow { traced: Some(Box::new(traced)), ..row(1, 0.25 * error) }]
         });
         let rows: Vec<StudyRow> = rows.collect();

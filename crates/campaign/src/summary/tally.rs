@@ -5,14 +5,16 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::detail::{CellDetail, ErrorDensity, JointErrors, MAX_PAIRS, MethodDetail};
-use super::performance::{Comparison, IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
+use super::performance::{
+    ErrorComparison, IndexErrors, MethodPerformance, MethodSummary, ReferenceComparison, Summary,
+};
 use super::predictions::{PredictionSummary, add_predictions};
 use super::tracing::TraceTally;
 use crate::design::{CellFacts, Design};
 use crate::rows::StudyRow;
 use crate::scenario::MethodName;
 use crate::statistics::{
-    BATCH_COUNT, ErrorSample, ErrorSums, NORMAL_QUANTILE_95, PairSums, Resamples, Statistic, wilson_share,
+    BATCH_COUNT, ErrorSample, ErrorSums, NORMAL_QUANTILE_95, PairedErrorSums, Resamples, Statistic, wilson_share,
 };
 
 /// Label, or else id, of the reference method; in a study without it, the first method is the reference.
@@ -173,13 +175,13 @@ fn most_batches(methods: &[MethodTally]) -> usize {
     methods.iter().map(|running| running.batches).max().unwrap_or(0)
 }
 
-fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
-    let [rms_difference, rms_ratio] =
-        resamples.bootstrap(pair.batches(), |total| [PairSums::rms_difference(total), PairSums::rms_ratio(total)]);
-    Comparison {
+fn comparison(pair: &PairedErrorSums, resamples: &Resamples) -> ErrorComparison {
+    let [rms_difference, rms_ratio] = resamples
+        .bootstrap(pair.batches(), |total| [PairedErrorSums::rms_difference(total), PairedErrorSums::rms_ratio(total)]);
+    ErrorComparison {
         rms_difference,
         rms_ratio,
-        smaller_error_share: wilson_share(pair.smaller.round() as u64, pair.trial_count()),
+        smaller_error_share: wilson_share(pair.smaller_error_count.round() as u64, pair.trial_count()),
     }
 }
 
@@ -195,7 +197,7 @@ struct MethodTally {
     /// Errors of K and T on the current trial, %.
     latest: [Option<f64>; 2],
     /// Paired sums of the errors of K and T, method and reference.
-    pairs: [PairSums; 2],
+    pairs: [PairedErrorSums; 2],
     heading: ErrorSample,
     validation: ErrorSample,
     evaluations: f64,
@@ -219,7 +221,7 @@ impl MethodTally {
         let intervals = [row.k_ci95_per_s, row.t_ci95_s, None];
         let answers = [row.k_per_s, row.t_s, None];
         // The Cramér–Rao bound is undefined for a base with effects.
-        let bound = row.bound.filter(|_| row.traced.is_none() || row.base_k_per_s.is_none());
+        let bound = row.cramer_rao_sd.filter(|_| row.traced.is_none() || row.base_k_per_s.is_none());
         for (place, index) in self.indices.iter_mut().enumerate() {
             let truth = truths[place];
             let bound = bound.zip(truth).map(|(sd, truth)| 100.0 * sd[place] / truth.abs());
@@ -257,14 +259,14 @@ impl MethodTally {
         }
     }
 
-    fn performance(&self, resamples: &Resamples) -> Performance {
+    fn performance(&self, resamples: &Resamples) -> MethodPerformance {
         let failed: u64 = self.failures.iter().map(|(_, count)| count).sum();
         let (heading, validation) = (self.heading.ordered(), self.validation.ordered());
         let answered = self.trials - failed;
         let [k, t, k_over_t] = self.indices.each_ref().map(|index| index.errors(resamples));
-        Performance {
+        MethodPerformance {
             trials: self.trials,
-            failures: self.failures.clone(),
+            failure_counts: self.failures.clone(),
             failure_rate: wilson_share(failed, self.trials),
             k,
             t,
@@ -272,13 +274,13 @@ impl MethodTally {
             heading_rmse_deg: heading.quantile_statistic(0.5),
             validation_rmse_deg: validation.quantile_statistic(0.5),
             validation_rmse_p90_deg: validation.quantile_statistic(0.9),
-            evaluations: (answered > 0).then(|| self.evaluations / answered as f64),
+            mean_evaluations: (answered > 0).then(|| self.evaluations / answered as f64),
         }
     }
 
     fn detail(&self) -> MethodDetail {
         let [k, t, _] = self.indices.each_ref().map(|index| ErrorDensity::from_errors(&index.sample.ordered()));
-        MethodDetail { k_errors: k, t_errors: t, cloud: JointErrors::from_pairs(&self.cloud) }
+        MethodDetail { k_errors: k, t_errors: t, joint_errors: JointErrors::from_pairs(&self.cloud) }
     }
 }
 
@@ -358,7 +360,7 @@ impl IndexSums {
             absolute_error_p90: absolute_errors.quantile_statistic(0.9),
             coverage: wilson_share(self.held, self.quoted),
             median_interval_width: self.widths.ordered().quantile_statistic(0.5),
-            interval_share: if self.quoted > 0 { wilson_share(self.quoted, self.answered) } else { None },
+            share_with_interval: if self.quoted > 0 { wilson_share(self.quoted, self.answered) } else { None },
             sd_over_bound: sd.zip(bound).map(|(sd, bound)| sd.times(1.0 / bound)),
         }
     }

@@ -30,7 +30,7 @@ fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> StudyRow 
         method,
         true_k_per_s: Some(true_k),
         true_t_s: Some(true_t),
-        bound: Some([0.001, 0.2, 1e-4]),
+        cramer_rao_sd: Some([0.001, 0.2, 1e-4]),
         k_per_s: Some(k),
         k_ci95_per_s: Some(about(k, true_k)),
         t_s: Some(t),
@@ -69,10 +69,10 @@ fn figures_are_those_of_the_errors() {
     near(performance.t.coverage, 1.0);
     near(performance.k.sd_over_bound, sd);
     near(performance.t.sd_over_bound, 0.1 * sd);
-    near(performance.k.interval_share, 1.0);
+    near(performance.k.share_with_interval, 1.0);
     near(performance.k.median_interval_width, 4.0);
     near(performance.heading_rmse_deg, 0.5);
-    assert_eq!((performance.trials, performance.failed(), performance.evaluations), (7, 0, Some(7.0)));
+    assert_eq!((performance.trials, performance.failed(), performance.mean_evaluations), (7, 0, Some(7.0)));
     assert_eq!(performance.validation_rmse_deg, None);
     assert_eq!(summary.overall[0], *performance, "one cell is all cells");
 }
@@ -88,7 +88,7 @@ fn failures_count_and_do_not_spoil() {
     let summary = summarise(&rows, &design(&["output-error"], 1));
     let performance = summary.performance(0, 0).expect("one cell");
     assert_eq!(
-        (performance.failed(), performance.failures.as_slice()),
+        (performance.failed(), performance.failure_counts.as_slice()),
         (3, [("not-excited".to_owned(), 3)].as_slice())
     );
     near(performance.failure_rate, 0.3);

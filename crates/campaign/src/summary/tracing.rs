@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::AddAssign;
 use std::sync::LazyLock;
 
-use ::trace::Verdict;
+use ::trace::TraceVerdict;
 use serde::{Deserialize, Serialize};
 
 use super::judgement::Judgement;
 use crate::design::CellFacts;
 use crate::rows::{NamedEffect, StudyRow, TraceRow};
-use crate::scenario::{HULL, MissingPhysics};
+use crate::scenario::{HULL_ID, MissingPhysics};
 use crate::statistics::{Statistic, wilson_share};
 
 /// Margin in log evidence above which a missing effect should be named; below it another effect explains the trial
@@ -25,32 +25,36 @@ pub struct TraceSummary {
     /// Index of the method, a trace.
     pub method: usize,
     /// Identifiers of the missing effects.
-    pub missing: Vec<String>,
+    #[serde(rename = "missing")]
+    pub missing_effects: Vec<String>,
     /// Number of trials by judgement, in a study that states the missing physics.
     #[serde(rename = "judged", default, skip_serializing_if = "BTreeMap::is_empty")]
     pub judgements: BTreeMap<Judgement, u64>,
     /// Number of trials.
     pub trials: u64,
-    /// Number of trials by verdict, in the order of [`Verdict::ALL`].
-    pub verdicts: [u64; Verdict::ALL.len()],
+    /// Number of trials by verdict, in the order of [`TraceVerdict::ALL`].
+    #[serde(rename = "verdicts")]
+    pub verdict_counts: [u64; TraceVerdict::ALL.len()],
     /// Number of trials by named effect.
-    pub named: BTreeMap<String, u64>,
+    #[serde(rename = "named")]
+    pub named_effect_counts: BTreeMap<String, u64>,
     /// Number of trials by effect named as an alias of a missing one.
-    pub aliases: BTreeMap<String, u64>,
+    #[serde(rename = "aliases")]
+    pub named_alias_counts: BTreeMap<String, u64>,
     /// Number of trials without any named effect.
     #[serde(rename = "silent")]
-    pub without_names: u64,
+    pub nothing_named_count: u64,
     /// Number of trials whose named groups contain every missing effect, or one of the effects that a formula stands
     /// for.
     #[serde(rename = "complete")]
-    pub all_named: u64,
+    pub all_named_count: u64,
     /// Number of trials with a named group that contains no missing effect; for a hull, whose missing effects are not
     /// defined, a group of weather effects alone.
     #[serde(rename = "wrong")]
-    pub falsely_named: u64,
+    pub falsely_named_count: u64,
     /// Number of trials in which exactly the missing effects were named, or correctly none.
     #[serde(rename = "exact")]
-    pub exactly_named: u64,
+    pub exactly_named_count: u64,
     /// Number of trials with a clear margin for the one missing effect, and number of those that name it.
     #[serde(rename = "clear")]
     pub clearly_separable: [u64; 2],
@@ -73,26 +77,29 @@ pub const CALIBRATION_BIN_EDGES: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.9
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct CalibrationBin {
     /// Number of pairs of effect and trial in the bin.
-    pub effects: u64,
+    #[serde(rename = "effects")]
+    pub effect_count: u64,
     /// Number of these pairs with the effect present.
-    pub present: u64,
+    #[serde(rename = "present")]
+    pub present_count: u64,
     /// Sum of the probabilities.
-    pub sum: f64,
+    #[serde(rename = "sum")]
+    pub probability_sum: f64,
 }
 
 impl AddAssign for CalibrationBin {
     fn add_assign(&mut self, other: Self) {
-        self.effects += other.effects;
-        self.present += other.present;
-        self.sum += other.sum;
+        self.effect_count += other.effect_count;
+        self.present_count += other.present_count;
+        self.probability_sum += other.probability_sum;
     }
 }
 
 static EFFECT_IDS: LazyLock<BTreeSet<&'static str>> =
-    LazyLock::new(|| ship::effects::all().iter().map(|effect| effect.id()).collect());
+    LazyLock::new(|| ship::effects::all_effects().iter().map(|effect| effect.id()).collect());
 
 static WEATHER_IDS: LazyLock<BTreeSet<&'static str>> = LazyLock::new(|| {
-    ship::effects::all().iter().filter(|effect| effect.is_environmental()).map(|effect| effect.id()).collect()
+    ship::effects::all_effects().iter().filter(|effect| effect.is_environmental()).map(|effect| effect.id()).collect()
 });
 
 /// Identifiers of all effects, each once, sorted.
@@ -102,18 +109,18 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 
 impl TraceSummary {
     /// Share of trials in which all missing effects were named; `None` without a missing effect, and for a hull.
-    pub fn all_named_share(&self) -> Option<Statistic> {
-        if self.missing.is_empty() { None } else { self.share_of(self.all_named) }
+    pub fn all_named_trial_share(&self) -> Option<Statistic> {
+        if self.missing_effects.is_empty() { None } else { self.share_of(self.all_named_count) }
     }
 
     /// Share of trials in which exactly the missing effects were named; `None` for a hull.
-    pub fn exactly_named_share(&self) -> Option<Statistic> {
-        self.share_of(self.exactly_named)
+    pub fn exactly_named_trial_share(&self) -> Option<Statistic> {
+        self.share_of(self.exactly_named_count)
     }
 
     /// Share of trials with a wrongly named group.
-    pub fn falsely_named_share(&self) -> Option<Statistic> {
-        wilson_share(self.falsely_named, self.trials)
+    pub fn falsely_named_trial_share(&self) -> Option<Statistic> {
+        wilson_share(self.falsely_named_count, self.trials)
     }
 
     /// Share of the trials; `None` for a hull.
@@ -128,7 +135,7 @@ impl TraceSummary {
 
     /// `true` for a hull, whose missing effects are not defined.
     pub fn is_hull(&self) -> bool {
-        self.missing.iter().any(|id| id == HULL)
+        self.missing_effects.iter().any(|id| id == HULL_ID)
     }
 }
 
@@ -157,8 +164,8 @@ impl RunningMean {
 impl TraceTally {
     /// Empty tally for the cell and the method of a row.
     pub(super) fn new(row: &StudyRow, facts: &CellFacts) -> Self {
-        let (cell, method, missing) = (row.cell as usize, row.method, facts.missing.clone());
-        let summary = TraceSummary { cell, method, missing, ..TraceSummary::default() };
+        let (cell, method, missing) = (row.cell as usize, row.method, facts.missing_effects.clone());
+        let summary = TraceSummary { cell, method, missing_effects: missing, ..TraceSummary::default() };
         Self { summary, physics: facts.physics.clone(), means: Default::default() }
     }
 
@@ -168,22 +175,22 @@ impl TraceTally {
         summary.trials += 1;
         let judgement = physics.as_ref().map(|physics| Judgement::from_trace_row(answer, physics));
         judgement.into_iter().for_each(|judgement| *summary.judgements.entry(judgement).or_default() += 1);
-        let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
-        verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
-        summary.without_names += u64::from(answer.named.is_empty());
-        let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
-        ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
-        let missing = &summary.missing;
+        let verdict = TraceVerdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
+        verdict.into_iter().for_each(|place| summary.verdict_counts[place] += 1);
+        summary.nothing_named_count += u64::from(answer.named_effects.is_empty());
+        let ids: BTreeSet<&str> = answer.named_effects.iter().map(|effect| &*effect.id).collect();
+        ids.into_iter().for_each(|id| *summary.named_effect_counts.entry(id.to_owned()).or_default() += 1);
+        let missing = &summary.missing_effects;
         // A formula with the physics of listed effects is matched by them.
         let accepted = match physics {
             Some(MissingPhysics::Listed { effects }) => effects,
             _ => missing,
         };
         let (right, wrong): (Vec<_>, Vec<_>) =
-            answer.named.iter().partition(|effect| accepted.iter().any(|id| effect.includes(id)));
+            answer.named_effects.iter().partition(|effect| accepted.iter().any(|id| effect.includes(id)));
         let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
         let aliases: BTreeSet<&str> = aliases.map(|effect| &*effect.id).collect();
-        aliases.into_iter().for_each(|id| *summary.aliases.entry(id.to_owned()).or_default() += 1);
+        aliases.into_iter().for_each(|id| *summary.named_alias_counts.entry(id.to_owned()).or_default() += 1);
         let complete = match physics {
             Some(MissingPhysics::Listed { .. }) => !right.is_empty(),
             _ => missing.iter().all(|id| right.iter().any(|effect| effect.includes(id))),
@@ -192,10 +199,10 @@ impl TraceTally {
             let ids = std::iter::once(&effect.id).chain(&effect.aliases);
             ids.into_iter().all(|id| WEATHER_IDS.contains(&**id))
         };
-        summary.falsely_named += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
-        summary.all_named += u64::from(complete && !missing.is_empty());
-        summary.exactly_named += u64::from(complete && wrong.is_empty());
-        if answer.margin.is_some_and(|margin| margin > MIN_CLEAR_MARGIN) {
+        summary.falsely_named_count += u64::from(wrong.iter().any(|effect| !summary.is_hull() || is_weather(effect)));
+        summary.all_named_count += u64::from(complete && !missing.is_empty());
+        summary.exactly_named_count += u64::from(complete && wrong.is_empty());
+        if answer.evidence_margin.is_some_and(|margin| margin > MIN_CLEAR_MARGIN) {
             summary.clearly_separable[0] += 1;
             summary.clearly_separable[1] += u64::from(complete);
         }
@@ -204,8 +211,9 @@ impl TraceTally {
             let entry = answer.probabilities.iter().find(|(other, _)| **other == *id);
             let sum = entry.map_or(0.0, |(_, probability)| *probability);
             let bin = CALIBRATION_BIN_EDGES[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
-            let present = u64::from(summary.missing.iter().any(|missing| missing == id));
-            summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
+            let present = u64::from(summary.missing_effects.iter().any(|missing| missing == id));
+            summary.calibration[bin] +=
+                CalibrationBin { effect_count: 1, present_count: present, probability_sum: sum };
         }
         summary.mean_expected_2_ln_lambda = expected.add(answer.expected_2_ln_lambda);
         summary.band_coverage =
@@ -225,7 +233,8 @@ mod tests {
     /// Summary of traces that name groups of effects if `missing` are missing.
     fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
         let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
-        let mut tally = TraceTally::new(&StudyRow::default(), &CellFacts { missing, ..CellFacts::default() });
+        let mut tally =
+            TraceTally::new(&StudyRow::default(), &CellFacts { missing_effects: missing, ..CellFacts::default() });
         let effect = |ids: &&[&str]| NamedEffect {
             id: ids[0].into(),
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
@@ -233,10 +242,10 @@ mod tests {
         };
         for groups in trials {
             tally.add(&TraceRow {
-                verdict: Verdict::Traced,
-                named: groups.iter().map(effect).collect(),
+                verdict: TraceVerdict::Traced,
+                named_effects: groups.iter().map(effect).collect(),
                 probabilities: vec![("wind_moment".into(), 0.97)],
-                margin: Some(30.0),
+                evidence_margin: Some(30.0),
                 expected_2_ln_lambda: Some(4.0),
                 fitted_band_coverage: Some(0.9),
                 ..TraceRow::default()
@@ -250,9 +259,15 @@ mod tests {
         let trials: [&[&[&str]]; 5] =
             [&[&["a"], &["b"]], &[&["c", "a"], &["b"]], &[&["a"]], &[&["a"], &["b"], &["d"]], &[]];
         let summary = summary(&["a", "b"], &trials);
-        assert_eq!((summary.trials, summary.all_named, summary.falsely_named, summary.without_names), (5, 3, 1, 1));
-        assert_eq!((summary.exactly_named, summary.clearly_separable), (2, [5, 3]));
-        assert_eq!((summary.named["b"], summary.named["c"], summary.aliases.get("c")), (3, 1, Some(&1)));
+        assert_eq!(
+            (summary.trials, summary.all_named_count, summary.falsely_named_count, summary.nothing_named_count),
+            (5, 3, 1, 1)
+        );
+        assert_eq!((summary.exactly_named_count, summary.clearly_separable), (2, [5, 3]));
+        assert_eq!(
+            (summary.named_effect_counts["b"], summary.named_effect_counts["c"], summary.named_alias_counts.get("c")),
+            (3, 1, Some(&1))
+        );
         assert_eq!((summary.mean_expected_2_ln_lambda, summary.band_coverage), (Some(4.0), [Some(0.9), None]));
     }
 
@@ -261,9 +276,12 @@ mod tests {
     fn effects_are_counted_by_their_probability() {
         let summary = summary(&["wind_moment"], &[&[]]);
         let absent = effect_ids().count() as u64 - 1;
-        assert_eq!(summary.calibration[0], CalibrationBin { effects: absent, present: 0, sum: 0.0 });
-        assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
-        assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), absent + 1);
+        assert_eq!(
+            summary.calibration[0],
+            CalibrationBin { effect_count: absent, present_count: 0, probability_sum: 0.0 }
+        );
+        assert_eq!(summary.calibration[6], CalibrationBin { effect_count: 1, present_count: 1, probability_sum: 0.97 });
+        assert_eq!(summary.calibration.iter().map(|range| range.effect_count).sum::<u64>(), absent + 1);
     }
 
     /// The missing effects of a hull are not defined, but a weather effect is wrong in a calm.
@@ -271,14 +289,17 @@ mod tests {
     fn weather_is_wrong_of_a_hull_in_a_calm() {
         let trials: [&[&[&str]]; 4] =
             [&[&["speed_loss"]], &[&["wind_moment", "speed_loss"]], &[&["wind_moment"]], &[&["moment_drift"], &["a"]]];
-        let summary = summary(&[HULL], &trials);
-        assert_eq!((summary.falsely_named, summary.exactly_named_share()), (2, None));
-        assert_eq!(summary.falsely_named_share().map(|share| share.value), Some(0.5));
+        let summary = summary(&[HULL_ID], &trials);
+        assert_eq!((summary.falsely_named_count, summary.exactly_named_trial_share()), (2, None));
+        assert_eq!(summary.falsely_named_trial_share().map(|share| share.value), Some(0.5));
     }
 
     #[test]
     fn any_name_is_wrong_where_nothing_is_missing() {
         let summary = summary(&[], &[&[], &[&["a"]]]);
-        assert_eq!((summary.falsely_named, summary.exactly_named, summary.all_named_share()), (1, 1, None));
+        assert_eq!(
+            (summary.falsely_named_count, summary.exactly_named_count, summary.all_named_trial_share()),
+            (1, 1, None)
+        );
     }
 }

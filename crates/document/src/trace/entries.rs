@@ -54,7 +54,7 @@ pub struct ParameterEntry {
     pub unit: String,
     /// Dimensionless value, if length and speed of the ship are known and the parameter has a dimension.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prime: Option<PrimeEntry>,
+    pub prime: Option<NondimensionalValue>,
     /// Record to which it belongs; `null` for all.
     pub only: Option<String>,
     /// `true` if the parameter lies at its bound; otherwise omitted.
@@ -64,7 +64,8 @@ pub struct ParameterEntry {
 
 /// Dimensionless number; angles in radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PrimeEntry {
+#[schemars(rename = "PrimeEntry")]
+pub struct NondimensionalValue {
     /// Value, standard deviation and 95 % interval.
     #[serde(flatten)]
     pub quantity: Quantity,
@@ -206,9 +207,11 @@ pub struct MissingMomentEntry {
     /// Explanation in the tables: the named effects together, otherwise the best candidate alone.
     pub explanation: Option<String>,
     /// `true` if the verdict is located or unexplained and no effect lies inside the bands of all significant curves.
-    pub unlisted: bool,
+    #[serde(rename = "unlisted")]
+    pub is_unlisted: bool,
     /// Effects inside the bands of all significant curves.
-    pub inside_all: Vec<String>,
+    #[serde(rename = "inside_all")]
+    pub effects_inside_bands: Vec<String>,
     /// Curves over the channels, the most likely first.
     #[serde(rename = "over")]
     pub channel_curves: Vec<ChannelCurveEntry>,
@@ -227,5 +230,6 @@ pub struct ChannelCurveEntry {
     #[serde(rename = "shows")]
     pub is_significant: bool,
     /// Effects inside the band everywhere.
-    pub inside: Vec<String>,
+    #[serde(rename = "inside")]
+    pub effects_inside_band: Vec<String>,
 }

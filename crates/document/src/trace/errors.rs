@@ -60,9 +60,9 @@ pub struct ModelReplayErrors {
     /// Mean width of that band.
     pub band_width_95_deg: Option<f64>,
     /// Heading error with a fitted rudder bias of the record, on held-out records.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub with_own_bias_deg: Option<f64>,
+    #[serde(rename = "with_own_bias_deg", default, skip_serializing_if = "Option::is_none")]
+    pub heading_rmse_own_bias_deg: Option<f64>,
     /// Heading error with a fitted slow moment of the record (piecewise linear, five knots), on held-out records.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub with_own_moment_deg: Option<f64>,
+    #[serde(rename = "with_own_moment_deg", default, skip_serializing_if = "Option::is_none")]
+    pub heading_rmse_own_moment_deg: Option<f64>,
 }

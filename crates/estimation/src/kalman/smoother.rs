@@ -2,22 +2,22 @@
 //!
 //! Source: Bryson and Frazier (1963), whose smoother inverts no matrix.
 
-use super::{Filter, GAIN_TOLERANCE, Reading, StateSensor, System, congruence, identity};
+use super::{GAIN_TOLERANCE, KalmanFilter, LinearSystem, SensorReading, StateSensor, congruence, identity};
 
 /// Smoother of a system: the filter with the predicted covariance of every gain.
 #[derive(Debug, Clone)]
-pub struct Smoother<const N: usize> {
+pub struct KalmanSmoother<const N: usize> {
     /// Filter that gives the innovations.
-    pub filter: Filter<N>,
+    pub filter: KalmanFilter<N>,
     /// Predicted covariance of the state before the reading, for every gain.
     predicted: Vec<[[f64; N]; N]>,
 }
 
-impl<const N: usize> Smoother<N> {
+impl<const N: usize> KalmanSmoother<N> {
     /// Smoother of a system.
-    pub fn new(system: System<N>) -> Self {
+    pub fn new(system: LinearSystem<N>) -> Self {
         let mut predicted = Vec::new();
-        let filter = Filter::visiting(system, GAIN_TOLERANCE, |covariance| predicted.push(*covariance));
+        let filter = KalmanFilter::visiting(system, GAIN_TOLERANCE, |covariance| predicted.push(*covariance));
         Self { filter, predicted }
     }
 
@@ -25,7 +25,7 @@ impl<const N: usize> Smoother<N> {
     /// before the row.
     fn run(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<([f64; N], f64)> {
         let mut x = [0.0; N];
-        let step = |(row, reading): (usize, &Reading)| {
+        let step = |(row, reading): (usize, &SensorReading)| {
             let (step, sensor) = (reading.step(), reading.sensor());
             if let Some(step) = step {
                 let f = &self.filter.system.steps[step].transition;

@@ -3,8 +3,8 @@
 //! The recursion within a column is serial: every row needs the row before it. Columns are independent, and so are
 //! filters, so several columns and two filters advance side by side.
 
-use super::{Filter, Gain, MAX_STATES, Reading, StateSensor, Step, System};
-use crate::lanes::{Kernel, run};
+use super::{Gain, KalmanFilter, LinearStep, LinearSystem, MAX_STATES, SensorReading, StateSensor};
+use crate::lanes::{Kernel, run_kernel};
 use crate::with_states;
 
 /// Whitening filter: turns columns of readings into innovations in units of their standard deviation.
@@ -16,7 +16,7 @@ pub struct Whitener {
     transitions: Vec<[[f64; MAX_STATES]; MAX_STATES]>,
     sensors: Vec<StateSensor>,
     gains: Vec<WhiteningGain>,
-    readings: Vec<Reading>,
+    readings: Vec<SensorReading>,
     /// Index of the gain of every reading.
     gain_of: Vec<u32>,
     /// Sum Σ log S over the readings, with the innovation variances S.
@@ -31,7 +31,7 @@ struct WhiteningGain {
     log_variance: f64,
 }
 
-impl<const N: usize> Filter<N> {
+impl<const N: usize> KalmanFilter<N> {
     /// Whitener with the gains of this filter of at most [`MAX_STATES`] states; the number of states is no part of its
     /// type.
     pub fn into_whitener(self) -> Whitener {
@@ -41,7 +41,7 @@ impl<const N: usize> Filter<N> {
             std::array::from_fn(|k| f.get(k).map_or([0.0; MAX_STATES], wide))
         };
         let log_determinant = self.log_determinant();
-        let System { steps, sensors, readings, .. } = self.system;
+        let LinearSystem { steps, sensors, readings, .. } = self.system;
         let gains = self.gains.iter().zip(self.weights).zip(self.log_variances);
         let gain = |((gain, weight), log_variance): ((&Gain<N>, _), _)| WhiteningGain {
             gain: wide(&gain.gain),
@@ -50,7 +50,7 @@ impl<const N: usize> Filter<N> {
         };
         Whitener {
             states: N,
-            is_upper: steps.iter().all(Step::is_upper),
+            is_upper: steps.iter().all(LinearStep::is_upper),
             transitions: steps.iter().map(|step| matrix(&step.transition)).collect(),
             sensors,
             gains: gains.map(gain).collect(),
@@ -69,21 +69,21 @@ impl Whitener {
 
     /// Whitens columns in place, each with one value per reading.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
-        for columns in columns.chunks_mut(COLUMNS) {
+        for columns in columns.chunks_mut(INTERLEAVED_COLUMNS) {
             with_states!(self.states, N => match columns.len() {
-                1 => run(WhiteningColumns::<N, 1> { whitener: self, columns }),
-                _ => run(WhiteningColumns::<N, COLUMNS> { whitener: self, columns }),
+                1 => run_kernel(WhiteningColumns::<N, 1> { whitener: self, columns }),
+                _ => run_kernel(WhiteningColumns::<N, INTERLEAVED_COLUMNS> { whitener: self, columns }),
             });
         }
     }
 
     /// Whitens interleaved columns into `white`: a row holds one reading of every column.
     pub fn apply_to_rows(&self, rows: &[InterleavedRow], white: &mut Vec<InterleavedRow>) {
-        white.resize(rows.len(), [0.0; COLUMNS]);
+        white.resize(rows.len(), [0.0; INTERLEAVED_COLUMNS]);
         let (whiteners, readings, out) = ([self], [rows], [&mut white[..]]);
         with_states!(self.states, N => match self.is_upper {
-            true => run(WhiteningRows::<N, 1, true> { whiteners, readings, out }),
-            false => run(WhiteningRows::<N, 1, false> { whiteners, readings, out }),
+            true => run_kernel(WhiteningRows::<N, 1, true> { whiteners, readings, out }),
+            false => run_kernel(WhiteningRows::<N, 1, false> { whiteners, readings, out }),
         });
     }
 
@@ -96,10 +96,10 @@ impl Whitener {
         let [first, second] = whiteners;
         let are_alike = first.states == second.states && first.readings.len() == second.readings.len();
         if are_alike && first.is_upper && second.is_upper {
-            white.resize(rows[0].len(), [0.0; COLUMNS]);
-            beside.resize(rows[1].len(), [0.0; COLUMNS]);
+            white.resize(rows[0].len(), [0.0; INTERLEAVED_COLUMNS]);
+            beside.resize(rows[1].len(), [0.0; INTERLEAVED_COLUMNS]);
             let out = [&mut white[..], &mut beside[..]];
-            with_states!(first.states, N => run(WhiteningRows::<N, 2, true> { whiteners, readings: rows, out }));
+            with_states!(first.states, N => run_kernel(WhiteningRows::<N, 2, true> { whiteners, readings: rows, out }));
         } else {
             first.apply_to_rows(rows[0], white);
             second.apply_to_rows(rows[1], beside);
@@ -109,7 +109,7 @@ impl Whitener {
     /// Predicted state before every reading of a column, given the earlier readings; unused states are zero.
     pub fn predicted_states(&self, column: &[f64]) -> Vec<[f64; MAX_STATES]> {
         let mut x = [[0.0]; MAX_STATES];
-        let predict = |((&value, &reading), &gain): ((&f64, &Reading), &u32)| {
+        let predict = |((&value, &reading), &gain): ((&f64, &SensorReading), &u32)| {
             if let Some(step) = reading.step() {
                 x = advanced::<_, _, false>(&self.transitions[step], &x);
             }
@@ -166,13 +166,13 @@ impl Whitener {
 }
 
 /// Number of columns that are whitened side by side.
-pub const COLUMNS: usize = 8;
+pub const INTERLEAVED_COLUMNS: usize = 8;
 
 /// Number of rows that are copied at a time for the columns that are whitened side by side.
 const ROWS: usize = 64;
 
-/// One reading of every one of [`COLUMNS`] columns.
-pub type InterleavedRow = [f64; COLUMNS];
+/// One reading of every one of [`INTERLEAVED_COLUMNS`] columns.
+pub type InterleavedRow = [f64; INTERLEAVED_COLUMNS];
 
 /// Whitening of up to `C` columns.
 struct WhiteningColumns<'a, 'b, const N: usize, const C: usize> {
@@ -218,11 +218,12 @@ impl<const N: usize, const FILTERS: usize, const UPPER: bool> Kernel for Whiteni
     #[inline(always)]
     fn call(self) {
         let Self { whiteners, readings, out } = self;
-        let mut x = [[[0.0; COLUMNS]; N]; FILTERS];
+        let mut x = [[[0.0; INTERLEAVED_COLUMNS]; N]; FILTERS];
         for row in 0..whiteners[0].readings.len() {
             for filter in 0..FILTERS {
                 let values = &readings[filter][row];
-                out[filter][row] = whiteners[filter].whiten::<N, COLUMNS, UPPER>(row, &mut x[filter], values);
+                out[filter][row] =
+                    whiteners[filter].whiten::<N, INTERLEAVED_COLUMNS, UPPER>(row, &mut x[filter], values);
             }
         }
     }
@@ -261,10 +262,16 @@ mod tests {
             StateSensor { state: 0, second_state: None, variance: 0.5 },
             StateSensor { state: 1, second_state: None, variance: 0.2 },
         ];
-        let readings = (0..COUNT).map(|row| Reading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
+        let readings =
+            (0..COUNT).map(|row| SensorReading::new((row % 2 == 0 && row > 0).then_some(0), row % 2)).collect();
         let initial = [[0.3, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.4]];
-        Filter::new(System { steps: vec![Step { transition, process_noise }], sensors, readings, initial })
-            .into_whitener()
+        KalmanFilter::new(LinearSystem {
+            steps: vec![LinearStep { transition, process_noise }],
+            sensors,
+            readings,
+            initial_covariance: initial,
+        })
+        .into_whitener()
     }
 
     fn rows() -> Vec<InterleavedRow> {
@@ -284,9 +291,9 @@ mod tests {
             for (whitener, whitened) in [first, second].iter().zip(&pair) {
                 let mut together = Vec::new();
                 whitener.apply_to_rows(&rows(), &mut together);
-                let mut columns: Vec<Vec<f64>> = (0..COLUMNS).map(|k| column(&rows(), k)).collect();
+                let mut columns: Vec<Vec<f64>> = (0..INTERLEAVED_COLUMNS).map(|k| column(&rows(), k)).collect();
                 whitener.apply(&mut columns.iter_mut().collect::<Vec<_>>());
-                for k in 0..COLUMNS {
+                for k in 0..INTERLEAVED_COLUMNS {
                     let mut alone = column(&rows(), k);
                     let predicted = whitener.predicted_states(&alone);
                     let read = |row: usize| predicted[row][row % 2];

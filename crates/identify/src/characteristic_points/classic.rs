@@ -36,7 +36,7 @@ impl Interval {
             duration: to.time - from.time,
             rudder: to.rudder_integral - from.rudder_integral,
             heading: to.heading - from.heading,
-            rate: to.rate,
+            rate: to.yaw_rate,
         }
     }
 
@@ -144,7 +144,7 @@ impl GainFit {
             };
             (full, solution.degrees_of_freedom)
         });
-        Ok(Self { gain, gain_bias, covariance, condition: solution.condition })
+        Ok(Self { gain, gain_bias, covariance, condition: solution.condition_number })
     }
 }
 
@@ -171,7 +171,7 @@ fn difference_covariance(
     let inverse = &solution.unscaled_covariance;
     let spread = design.transpose() * &omega * design;
     let expected = omega.trace() - (inverse * &spread).trace();
-    (expected > 0.0).then(|| inverse * spread * inverse * (solution.rss / expected))
+    (expected > 0.0).then(|| inverse * spread * inverse * (solution.residual_sum_of_squares / expected))
 }
 
 fn covariance(

@@ -25,7 +25,7 @@ struct Equations {
 /// Heading (rad) and yaw rate (rad/s) at `instant` of a cubic fitted to the rows within the half width of `centre`;
 /// `None` if there are fewer than five rows.
 fn local_fit(trial: &AnalysedTrial, centre: f64, instant: f64) -> Option<[f64; 2]> {
-    let reach = trial.points.half_width * (1.0 + 1e-9);
+    let reach = trial.points.fit_half_width * (1.0 + 1e-9);
     let time = &trial.samples.time;
     let rows = time.partition_point(|t| *t < centre - reach)..time.partition_point(|t| *t <= centre + reach);
     // There must be more rows than coefficients, or the fit does not smooth.
@@ -44,7 +44,7 @@ pub(super) fn identify_at_spaced_instants(
 ) -> Result<PointsFit, IdentifyError> {
     let mut equations = Equations::default();
     for trial in trials {
-        let (width, last) = (trial.points.half_width, trial.samples.time[trial.samples.len() - 1]);
+        let (width, last) = (trial.points.fit_half_width, trial.samples.time[trial.samples.len() - 1]);
         // Windows must not touch: a row at the end of one window would belong to the next as well.
         let step = 2.0 * width + last / (trial.samples.len() - 1) as f64;
         let mut time = width;
@@ -69,18 +69,18 @@ pub(super) fn identify_at_extrema(
 ) -> Result<PointsFit, IdentifyError> {
     let mut equations = Equations::default();
     for trial in trials {
-        let [start_heading, start_rate] = if trial.points.from_rest {
+        let [start_heading, start_rate] = if trial.points.starts_at_rest {
             let origin = trial.points.zero_rate_points[0];
-            [origin.heading + trial.points.base, 0.0]
+            [origin.heading + trial.points.base_course, 0.0]
         } else {
-            local_fit(trial, trial.points.half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
+            local_fit(trial, trial.points.fit_half_width, 0.0).ok_or(IdentifyError::TooFewPoints {
                 kind: "headings in the first window",
                 needed: 5,
-                count: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.half_width),
+                count: trial.samples.time.partition_point(|t| *t <= 2.0 * trial.points.fit_half_width),
             })?
         };
         for point in trial.points.extrema() {
-            let heading = point.heading + trial.points.base - start_heading;
+            let heading = point.heading + trial.points.base_course - start_heading;
             equations.push(start_rate, point.rudder_integral, point.time, heading, bias);
         }
         equations.ends.push(equations.heading.len());
@@ -129,7 +129,7 @@ impl Equations {
         Ok(PointsFit {
             parameters: [gain, gain_bias, time],
             covariance,
-            diagnostics: vec![("condition", solution.condition), ("equations", self.heading.len() as f64)],
+            diagnostics: vec![("condition", solution.condition_number), ("equations", self.heading.len() as f64)],
         })
     }
 }

@@ -43,7 +43,7 @@ pub struct CharacteristicPoint {
     /// Heading, rad.
     pub heading: f64,
     /// Yaw rate, rad/s.
-    pub rate: f64,
+    pub yaw_rate: f64,
     /// ∫δ since the first row, rad s.
     pub rudder_integral: f64,
 }
@@ -56,73 +56,81 @@ pub struct TrialPoints {
     /// Passages of the base course in order of time.
     pub crossings: Vec<CharacteristicPoint>,
     /// `true` if the record starts at rest, so that the first of `zero_rate_points` is the execute and no extremum.
-    pub from_rest: bool,
+    pub starts_at_rest: bool,
     /// Base course, rad.
-    pub base: f64,
+    pub base_course: f64,
     /// Origin of the base course.
-    pub base_origin: BaseCourseOrigin,
+    pub base_course_origin: BaseCourseOrigin,
     /// Half width of the local fits, s.
-    pub half_width: f64,
+    pub fit_half_width: f64,
 }
 
 impl TrialPoints {
     /// Heading extrema, without a start at rest.
     pub fn extrema(&self) -> &[CharacteristicPoint] {
-        &self.zero_rate_points[usize::from(self.from_rest)..]
+        &self.zero_rate_points[usize::from(self.starts_at_rest)..]
     }
 
     /// Leaves a start at rest out of the instants with r = 0.
     pub fn remove_start_at_rest(&mut self) {
-        if std::mem::take(&mut self.from_rest) {
+        if std::mem::take(&mut self.starts_at_rest) {
             self.zero_rate_points.remove(0);
         }
     }
 
-    /// Characteristic points of a record. `base` (rad) and `half_width` (s) are estimated from the record if they are
-    /// `None`, the half width as the share `width_share` of half a period, but at least three sampling intervals.
-    pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
+    /// Characteristic points of a record. `base_course` (rad) and `fit_half_width` (s) are estimated from the record if
+    /// they are `None`, the half width as the share `width_share` of half a period, but at least three sampling
+    /// intervals.
+    pub fn find(samples: &Samples, base_course: Option<f64>, fit_half_width: Option<f64>, width_share: f64) -> Self {
         let time = &samples.time;
         let (lo, hi) = extremes(&samples.heading);
-        let approach = approach(samples, base, [lo, hi]);
+        let approach = approach(samples, base_course, [lo, hi]);
         let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
-        let (base, base_origin) = match (base, &approach) {
-            (Some(base), _) => (base, BaseCourseOrigin::Given),
+        let (base_course, base_course_origin) = match (base_course, &approach) {
+            (Some(base_course), _) => (base_course, BaseCourseOrigin::Given),
             (None, Some(rows)) => (mean(rows.clone()), BaseCourseOrigin::Approach),
             // A zero between the quarter points of the headings may be the base course.
             (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseCourseOrigin::Zero),
             (None, None) => (0.5 * (lo + hi), BaseCourseOrigin::Middle),
         };
-        let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
+        let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base_course).collect();
         let interval = time[time.len() - 1] / (time.len() - 1) as f64;
-        let half_width =
-            half_width.unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
+        let fit_half_width = fit_half_width
+            .unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(MIN_INTERVALS * interval));
         let point = |time, heading, rate| {
             let rudder_integral = rudder_integral(samples, time);
-            CharacteristicPoint { time, heading, rate, rudder_integral }
+            CharacteristicPoint { time, heading, yaw_rate: rate, rudder_integral }
         };
-        let mut zero_rate_points: Vec<CharacteristicPoint> = points::extrema(time, &off_course, half_width)
+        let mut zero_rate_points: Vec<CharacteristicPoint> = points::extrema(time, &off_course, fit_half_width)
             .into_iter()
             .map(|[at, heading]| {
-                let (at, heading) = centred(time, &off_course, half_width, at).unwrap_or((at, heading));
+                let (at, heading) = centred(time, &off_course, fit_half_width, at).unwrap_or((at, heading));
                 point(at, heading, 0.0)
             })
             .collect();
         let first_extremum = zero_rate_points.first().map_or(f64::INFINITY, |point| point.time);
         if let Some(rows) = &approach {
             let last = rows.end - 1;
-            let recent = rows.clone().filter(|&k| time[k] >= time[last] - 2.0 * half_width);
-            let heading = mean(recent.min().unwrap_or(last)..rows.end) - base;
+            let recent = rows.clone().filter(|&k| time[k] >= time[last] - 2.0 * fit_half_width);
+            let heading = mean(recent.min().unwrap_or(last)..rows.end) - base_course;
             zero_rate_points.insert(0, point(time[last], heading, 0.0));
         }
         // A window about a passage is not centred on a row: half an interval more gives it as many rows as a centred
         // window.
-        let crossings = points::zero_crossings(time, &off_course, half_width + 0.5 * interval)
+        let crossings = points::zero_crossings(time, &off_course, fit_half_width + 0.5 * interval)
             .into_iter()
             .map(|[time, yaw_rate]| point(time, 0.0, yaw_rate))
             // Noise on the approach crosses the base course too.
             .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
             .collect();
-        Self { zero_rate_points, crossings, from_rest: approach.is_some(), base, base_origin, half_width }
+        Self {
+            zero_rate_points,
+            crossings,
+            starts_at_rest: approach.is_some(),
+            base_course,
+            base_course_origin,
+            fit_half_width,
+        }
     }
 }
 

@@ -27,7 +27,7 @@ pub enum RegressionForm {
 
 /// Equations of motion of one or several trials; K, T and δ_r are common to all.
 #[derive(Debug, Clone, Default)]
-pub struct Equations {
+pub struct RegressionEquations {
     yaw_acceleration: Vec<f64>,
     yaw_rate: Vec<f64>,
     rudder: Vec<f64>,
@@ -49,9 +49,9 @@ struct Block {
     covariance: DMatrix<f64>,
 }
 
-/// Solution of [`Equations`].
+/// Solution of [`RegressionEquations`].
 #[derive(Debug, Clone)]
-pub struct Solution {
+pub struct RegressionSolution {
     /// First-order response.
     pub response: FirstOrder,
     /// Covariance of (1/T, K/T, δ_r) for white heading noise of the variance given with every trial.
@@ -60,7 +60,7 @@ pub struct Solution {
     pub condition: f64,
 }
 
-impl Equations {
+impl RegressionEquations {
     /// Adds the equations of a trial at the given rows: r and r' from `heading`, the projection of the heading on
     /// `basis`, and δ from `rudder` (rad, a value for every instant of the basis).
     ///
@@ -107,7 +107,7 @@ impl Equations {
     /// Fails with [`IdentifyError::Singular`] if the condition number of the scaled equations exceeds
     /// `condition_limit`, with [`IdentifyError::TooFewPoints`] below three equations, and with
     /// [`IdentifyError::NotAShip`] if K/T is not positive.
-    pub fn solve(&self, response: RegressionForm, condition_limit: f64) -> Result<Solution, IdentifyError> {
+    pub fn solve(&self, response: RegressionForm, condition_limit: f64) -> Result<RegressionSolution, IdentifyError> {
         let constant = vec![1.0; self.len()];
         let (left, right) = self.sides(response);
         let minus_right: Vec<f64> = right.iter().map(|x| -x).collect();
@@ -131,10 +131,10 @@ impl Equations {
         let inverse = Matrix3::from_fn(|i, j| fit.unscaled_covariance[(i, j)]);
         let spread = self.spread_of_moments(response, &parameters);
         let covariance = jacobian * inverse * spread * inverse * jacobian.transpose();
-        Ok(Solution {
+        Ok(RegressionSolution {
             response: FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: s / q },
             covariance: 0.5 * (covariance + covariance.transpose()),
-            condition: fit.condition,
+            condition: fit.condition_number,
         })
     }
 
@@ -195,7 +195,7 @@ mod tests {
     fn the_algebra_is_exact() {
         let case = Case { bias_deg: 1.0, ..Case::default() };
         let Truth { yaw_rate, yaw_acceleration, rudder, .. } = case.truth();
-        let equations = Equations { yaw_acceleration, yaw_rate, rudder, trials: Vec::new() };
+        let equations = RegressionEquations { yaw_acceleration, yaw_rate, rudder, trials: Vec::new() };
         for response in [RegressionForm::YawAcceleration, RegressionForm::YawRate] {
             let solved = equations.solve(response, 1e4).expect("well conditioned").response;
             assert_relative_eq!(solved.K(), case.K, max_relative = 1e-9);

@@ -101,7 +101,7 @@ pub fn sample_triples(
         }
         drawn.sampled += 1;
         let triple = chosen.map(|index| instants[index]);
-        let Some(answer) = solve(&triple, scale) else {
+        let Some(answer) = solve_triple(&triple, scale) else {
             drawn.singular += 1;
             continue;
         };
@@ -117,7 +117,7 @@ pub fn sample_triples(
 
 /// Parameters from three instants; `None` if they lie on a line in the plane of rudder and r' (to rounding), both
 /// measured in `scale` (standard deviations of r' and δ), or if K is zero.
-pub fn solve(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
+pub fn solve_triple(triple: &[RegressionPoint; 3], scale: [f64; 2]) -> Option<TripleEstimate> {
     let [first, second, third] = triple;
     // Differences against the third instant eliminate K δ_r.
     let difference = |i: &RegressionPoint| {

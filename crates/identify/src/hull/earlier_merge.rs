@@ -16,7 +16,7 @@ pub fn merge_with_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Opti
     let is_same_form = |form: &HullModel| form.as_str() == fitted.form.as_str();
     let mut coefficients = fitted.form.coefficients().to_vec();
     for (place, coefficient) in coefficients.iter_mut().enumerate() {
-        (coefficient.mean, coefficient.sd) = (fitted.values[place], fitted.covariance[(place, place)].sqrt());
+        (coefficient.mean, coefficient.sd) = (fitted.coefficients[place], fitted.covariance[(place, place)].sqrt());
     }
     let precision = Cholesky::new(fitted.covariance.clone())?.inverse();
     let (form, particulars) = (fitted.form.clone(), Some(fitted.particulars));
@@ -24,9 +24,9 @@ pub fn merge_with_earlier(fitted: &EarlierHull, earlier: &[EarlierHull]) -> Opti
     let of_form: Vec<&EarlierHull> = earlier.iter().filter(|hull| is_same_form(&hull.form)).collect();
     both.add(&fitted.particulars, &of_form);
     let [covariance, _] = both.covariance_and_gain()?;
-    let after = EarlierHull { values: both.mean(), covariance, ..fitted.clone() };
+    let after = EarlierHull { coefficients: both.mean(), covariance, ..fitted.clone() };
     let before =
         HullFormPrior::candidates(Some(&fitted.particulars), earlier).into_iter().find(|p| is_same_form(&p.form));
-    let check = before.and_then(|before| PriorCheck::from_fit(&before, &after.values, &after.covariance));
+    let check = before.and_then(|before| PriorCheck::from_fit(&before, &after.coefficients, &after.covariance));
     Some((after, check))
 }

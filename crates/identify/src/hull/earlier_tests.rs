@@ -10,7 +10,7 @@ use trial::{Channel, Columns, Trial};
 
 use super::objective::HullObjective;
 use super::tests::{LENGTH, SPEED, TRUTH, hull, record};
-use super::track::HullTrack;
+use super::track::HullSignals;
 use super::{EarlierHull, HullEstimate, HullFormPrior, fit, merge_with_earlier};
 
 const SHIP: HullParticulars = HullParticulars {
@@ -34,7 +34,7 @@ fn earlier(particulars: HullParticulars, form: &str) -> EarlierHull {
     let priors = form.coefficients();
     let values = DVector::from_iterator(priors.len(), priors.iter().map(|prior| prior.mean + prior.sd));
     let covariance = form.covariance() * 0.01;
-    EarlierHull { form, particulars, values, covariance }
+    EarlierHull { form, particulars, coefficients: values, covariance }
 }
 
 /// Prior of a coefficient after earlier trials: its shift from the prior of her particulars and its deviation, both in
@@ -72,12 +72,12 @@ fn a_hull_is_weighed_together_with_earlier_trials() {
     let (after, check) = merge_with_earlier(&own, std::slice::from_ref(&own)).expect("of its form");
     let nv = own.form.coefficients().iter().position(|one| one.key == "Nv").expect("known");
     let before = own.form.coefficients()[nv];
-    let found = [(after.values[nv] - before.mean) / before.sd, after.covariance[(nv, nv)].sqrt() / before.sd];
+    let found = [(after.coefficients[nv] - before.mean) / before.sd, after.covariance[(nv, nv)].sqrt() / before.sd];
     let precision = 100.0 + 99.0 / 2.25;
     near(found, [(100.0 + 100.0 / 2.25) / precision, precision.powf(-0.5)]);
     assert!(!check.expect("both tell something").is_conflict());
     let apart = EarlierHull {
-        values: own.form.coefficients().iter().map(|one| one.mean - one.sd).collect::<Vec<_>>().into(),
+        coefficients: own.form.coefficients().iter().map(|one| one.mean - one.sd).collect::<Vec<_>>().into(),
         ..own.clone()
     };
     let (_, check) = merge_with_earlier(&own, &[apart]).expect("of its form");
@@ -147,7 +147,7 @@ fn left_by(estimate: &HullEstimate) -> EarlierHull {
     EarlierHull {
         form: estimate.prior.form.clone(),
         particulars: SHIP,
-        values: estimate.values.clone(),
+        coefficients: estimate.coefficients.clone(),
         covariance: estimate.covariance.clone(),
     }
 }
@@ -158,18 +158,19 @@ fn quadratic(all: &[EarlierHull]) -> HullFormPrior {
 
 /// Mean square heading error of the replays of other records, rad².
 fn error_on(estimate: &HullEstimate, others: &[Trial]) -> f64 {
-    let track = |trial: &Trial| HullTrack::from_trial(trial, &estimate.reference).expect("a record");
-    let tracks: Vec<HullTrack> = others.iter().map(track).collect();
-    let mut problem = HullObjective::new(&estimate.prior, &tracks);
-    let left = problem.misfits(estimate.values.as_slice()).expect("a ship");
-    left.iter().map(|error| error.whole).sum::<f64>() / left.len() as f64
+    let signals = |trial: &Trial| HullSignals::from_trial(trial, &estimate.reference).expect("a record");
+    let hull_signals: Vec<HullSignals> = others.iter().map(signals).collect();
+    let mut problem = HullObjective::new(&estimate.prior, &hull_signals);
+    let left = problem.misfits(estimate.coefficients.as_slice()).expect("a ship");
+    left.iter().map(|error| error.whole_heading).sum::<f64>() / left.len() as f64
 }
 
 fn half_of(trial: &Trial) -> Trial {
     let rows = trial.time().len() / 2;
     let of = |channel: Channel| (channel, trial.channel(channel).expect("recorded")[..rows].to_vec());
     let channels = [Channel::Rudder, Channel::Heading, Channel::Speed].map(of);
-    let columns = Columns { time: trial.time()[..rows].to_vec(), channels: channels.into(), unknown: Vec::new() };
+    let columns =
+        Columns { time: trial.time()[..rows].to_vec(), channels: channels.into(), unknown_columns: Vec::new() };
     let ship = trial.particulars().expect("declared");
     Trial::new("half", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }

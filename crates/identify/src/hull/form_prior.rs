@@ -46,7 +46,7 @@ pub struct EarlierHull {
     /// Particulars of the ship.
     pub particulars: HullParticulars,
     /// Estimates of the coefficients, dimensionless, in the order of the form.
-    pub values: DVector<f64>,
+    pub coefficients: DVector<f64>,
     /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
 }
@@ -137,7 +137,7 @@ impl EarlierHull {
         let in_root = |vector: DVector<f64>| root.solve_lower_triangular(&vector);
         let half = root.solve_lower_triangular(&kept_block(&self.covariance))?;
         let after = Cholesky::new(root.solve_lower_triangular(&half.transpose())?)?.inverse();
-        let departure = in_root(DVector::from_fn(count, |i, _| self.values[kept[i]] - before[kept[i]].mean))?;
+        let departure = in_root(DVector::from_fn(count, |i, _| self.coefficients[kept[i]] - before[kept[i]].mean))?;
         // h − D μ₁ = C₁⁻¹ (θ₁ − μ₁): the information on the departure from the prior.
         let departure_information = &after * departure;
         let eigen = SymmetricEigen::new(after - DMatrix::identity(count, count));

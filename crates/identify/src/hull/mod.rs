@@ -51,19 +51,19 @@ pub use moment::MisfitMoment;
 pub use objective::ResidualDeviations;
 use objective::{HullObjective, heading_variances};
 pub use track::HullReference;
-use track::HullTrack;
+use track::HullSignals;
 
 /// Rules of the Levenberg-Marquardt search.
 const RULES: SearchSettings = SearchSettings {
     max_steps: 40,
-    damping: 1e-2,
-    shrink: 0.2,
+    initial_damping: 1e-2,
+    damping_shrink: 0.2,
     trust_ratio: 0.25,
-    grow: 4.0,
+    damping_growth: 4.0,
     min_damping: [1e-9, 1e-4],
     max_rejections: 14,
     min_decrease: 1e-3,
-    tolerance: [1e-3, 1e-5],
+    decrease_tolerance: [1e-3, 1e-5],
     max_small_steps: 2,
 };
 
@@ -91,7 +91,7 @@ pub struct HullEstimate {
     /// Length, speed and propeller rate that make the quantities dimensionless.
     pub reference: HullReference,
     /// Estimates of the coefficients, dimensionless, in the order of `prior.coefficients`.
-    pub values: DVector<f64>,
+    pub coefficients: DVector<f64>,
     /// Covariance of the coefficients.
     pub covariance: DMatrix<f64>,
     /// Residuals of the records.
@@ -105,9 +105,9 @@ pub struct HullEstimate {
 /// Fails if length or speed of the ship are missing, if a record has fewer than twenty headings, rows too far apart,
 /// too long a duration or a start near rest, or if no coefficients near the prior can be replayed.
 pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, HullFitError> {
-    let (reference, tracks) = tracks(trials)?;
+    let (reference, hull_signals) = hull_signals(trials)?;
     let form = &prior.form;
-    let mut problem = HullObjective::new(prior, &tracks);
+    let mut problem = HullObjective::new(prior, &hull_signals);
     let mut start = prior.mean();
     let mut search = minimise(&mut problem, start, &RULES);
     // The weight of a record grows as the hull approaches it, which avoids distant minima.
@@ -119,36 +119,37 @@ pub fn fit(trials: &[Trial], prior: &HullFormPrior) -> Result<HullEstimate, Hull
     if search.end == SearchEnd::NotFinite {
         return Err(HullFitError::NoReplay);
     }
-    let covariance = Cholesky::new(search.normal.matrix.clone()).map(|factor| factor.inverse());
+    let covariance = Cholesky::new(search.normal_equations.matrix.clone()).map(|factor| factor.inverse());
     let covariance = covariance.ok_or(HullFitError::NoReplay)?;
     let misfits = problem.misfits(search.estimate.as_slice()).unwrap_or_default();
     let residual = |(trial, misfit): (&Trial, objective::Misfit)| HullResidual {
         name: trial.name().to_owned(),
-        whole_replay_rms: misfit.whole.sqrt(),
-        window_rms: misfit.window.sqrt(),
+        whole_replay_rms: misfit.whole_heading.sqrt(),
+        window_rms: misfit.window_heading.sqrt(),
         initial_yaw_rate: misfit.initial_yaw_rate / reference.ship_length_time(),
     };
     let moment = MisfitMoment::from_misfits(
         &form.with_coefficients(search.estimate.as_slice()).ok_or(HullFitError::NoReplay)?,
-        &tracks,
+        &hull_signals,
         &misfits,
     );
     let moment = MisfitMoment { correlation_time: moment.correlation_time * reference.ship_length_time(), ..moment };
     let residuals = trials.iter().zip(misfits).map(residual).collect();
     let prior = prior.clone();
-    Ok(HullEstimate { prior, reference, values: search.estimate, covariance, residuals, moment })
+    Ok(HullEstimate { prior, reference, coefficients: search.estimate, covariance, residuals, moment })
 }
 
 /// Reason why no hull can be fitted to these records of one ship; `None` if a fit is possible.
-pub fn refusal(trials: &[Trial]) -> Option<HullFitError> {
-    tracks(trials).err()
+pub fn fit_refusal(trials: &[Trial]) -> Option<HullFitError> {
+    hull_signals(trials).err()
 }
 
 /// Dimensionless records of one ship, and their reference quantities.
-fn tracks(trials: &[Trial]) -> Result<(HullReference, Vec<HullTrack>), HullFitError> {
+fn hull_signals(trials: &[Trial]) -> Result<(HullReference, Vec<HullSignals>), HullFitError> {
     let reference = trials.iter().find_map(HullReference::from_trial).ok_or(HullFitError::MissingParticulars)?;
-    let tracks = trials.iter().map(|trial| HullTrack::from_trial(trial, &reference)).collect::<Result<_, _>>()?;
-    Ok((reference, tracks))
+    let hull_signals =
+        trials.iter().map(|trial| HullSignals::from_trial(trial, &reference)).collect::<Result<_, _>>()?;
+    Ok((reference, hull_signals))
 }
 
 /// Maximum residual of a supported hull, relative to the smallest residual of all hulls and another model.
@@ -156,7 +157,7 @@ const MAX_RESIDUAL_RATIO: f64 = 3.0;
 
 /// Estimates for all forms that can be fitted to records of one ship, with priors from earlier trials; a form whose fit
 /// fails is left out.
-pub fn fit_all(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
+pub fn fit_all_forms(trials: &[Trial], earlier: &[EarlierHull]) -> Vec<HullEstimate> {
     let priors = HullFormPrior::candidates(trials.iter().find_map(Trial::hull).as_ref(), earlier);
     priors.par_iter().filter_map(|prior| fit(trials, prior).ok()).collect()
 }
@@ -172,29 +173,30 @@ pub fn supported_hulls(hulls: Vec<HullEstimate>, rival: f64) -> Vec<HullEstimate
 impl HullEstimate {
     /// Hull with the estimated coefficients at the size and speed of the ship, for replays.
     pub fn scaled_hull<R: Real>(&self) -> ScaledHull<R> {
-        let values: Vec<R> = self.values.iter().map(|&value| R::from(value)).collect();
+        let values: Vec<R> = self.coefficients.iter().map(|&value| R::from(value)).collect();
         let HullReference { length, speed, propeller_rate } = self.reference;
         let hull = self.prior.form.with_coefficients(&values).expect("the fit has replayed it");
-        ScaledHull { hull, length, speed, propeller: propeller_rate }
+        ScaledHull { hull, length, speed, propeller_rate }
     }
 
     /// Variance of the replayed heading of a record over time (s), rad²: from the covariance of the coefficients and
     /// from the mean square residual of the fit. `None` for a record that cannot be replayed, or if the standard
     /// deviation exceeds half a turn, beyond which the linear propagation does not hold.
     pub fn heading_variance(&self, trial: &Trial) -> Option<Polyline> {
-        let track = HullTrack::from_trial(trial, &self.reference).ok()?;
-        let [time, mut variance] = heading_variances(&self.prior, &track, self.values.as_slice(), &self.covariance)?;
+        let signals = HullSignals::from_trial(trial, &self.reference).ok()?;
+        let [time, mut variance] =
+            heading_variances(&self.prior, &signals, self.coefficients.as_slice(), &self.covariance)?;
         let residual = self.mean_square_heading_error();
         variance.iter_mut().for_each(|value| *value += residual);
         if variance.iter().any(|value| *value > PI * PI) {
             return None;
         }
-        Polyline::new(time.into_iter().map(|t| t * track.ship_length_time).collect(), variance).ok()
+        Polyline::new(time.into_iter().map(|t| t * signals.ship_length_time).collect(), variance).ok()
     }
 
     /// Check of the prior against the records; `None` if the records add no information.
     pub fn prior_check(&self) -> Option<PriorCheck> {
-        PriorCheck::from_fit(&self.prior, &self.values, &self.covariance)
+        PriorCheck::from_fit(&self.prior, &self.coefficients, &self.covariance)
     }
 
     /// Mean over the records, with equal weights, of the mean square heading error of the whole replay, rad².

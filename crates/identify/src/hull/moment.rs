@@ -8,7 +8,7 @@ use ship::vessel::prime::PrimeHull;
 
 use super::objective::{Misfit, window_mean_square};
 use super::replayed::replay_rows;
-use super::track::HullTrack;
+use super::track::HullSignals;
 
 /// Correlation time, in L/U₀: the error of a form changes with the manoeuvre and not with a gust.
 const CORRELATION_TIME_LENGTHS: f64 = 2.0;
@@ -29,7 +29,7 @@ const SEED: u64 = 2_210_105;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MisfitMoment {
     /// Standard deviation as the rudder angle of equal moment at approach speed, rad.
-    pub deviation: f64,
+    pub sd_rudder: f64,
     /// Time in which its autocorrelation falls to 1/e, s.
     pub correlation_time: f64,
 }
@@ -38,39 +38,40 @@ impl MisfitMoment {
     /// Random moment, in units of L and U₀, under which the hull departs from its undisturbed replay in windows of 3.5
     /// L/U₀ by the residuals of the records, `misfits`. The deviation is zero if a simulated departure is zero or not
     /// finite.
-    pub(super) fn from_misfits(hull: &PrimeHull, tracks: &[HullTrack], misfits: &[Misfit]) -> Self {
+    pub(super) fn from_misfits(hull: &PrimeHull, hull_signals: &[HullSignals], misfits: &[Misfit]) -> Self {
         let hull = hull.to_real::<Dual<1>>();
-        let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / tracks.len() as f64;
-        let target = mean(&mut misfits.iter().map(|misfit| misfit.window));
+        let mean = |squares: &mut dyn Iterator<Item = f64>| squares.sum::<f64>() / hull_signals.len() as f64;
+        let target = mean(&mut misfits.iter().map(|misfit| misfit.window_heading));
         let mut deviation = FIRST_DEVIATION_RAD;
         for _ in 0..SCALINGS {
-            let of_track = |track| (0..DRAWS).map(|draw| departure(&hull, track, deviation, SEED + draw)).sum::<f64>();
-            let simulated = mean(&mut tracks.iter().map(of_track)) / DRAWS as f64;
+            let of_record =
+                |signals| (0..DRAWS).map(|draw| departure(&hull, signals, deviation, SEED + draw)).sum::<f64>();
+            let simulated = mean(&mut hull_signals.iter().map(of_record)) / DRAWS as f64;
             if !(simulated > 0.0 && simulated.is_finite()) {
-                return Self { deviation: 0.0, correlation_time: CORRELATION_TIME_LENGTHS };
+                return Self { sd_rudder: 0.0, correlation_time: CORRELATION_TIME_LENGTHS };
             }
             deviation *= (target / simulated).sqrt();
         }
-        Self { deviation, correlation_time: CORRELATION_TIME_LENGTHS }
+        Self { sd_rudder: deviation, correlation_time: CORRELATION_TIME_LENGTHS }
     }
 }
 
 /// Mean square heading error (rad²) in windows of a replay under a random moment, computed as for a record.
-fn departure(hull: &PrimeHull<Dual<1>>, track: &HullTrack, deviation: f64, seed: u64) -> f64 {
+fn departure(hull: &PrimeHull<Dual<1>>, signals: &HullSignals, deviation: f64, seed: u64) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut disturbed = track.clone();
+    let mut disturbed = signals.clone();
     let mut moment = deviation * random.sample::<f64, _>(StandardNormal);
     for (row, value) in disturbed.moment.iter_mut().enumerate() {
         if row > 0 {
-            let kept = (-(track.time[row] - track.time[row - 1]) / CORRELATION_TIME_LENGTHS).exp();
+            let kept = (-(signals.time[row] - signals.time[row - 1]) / CORRELATION_TIME_LENGTHS).exp();
             moment = kept * moment + (1.0 - kept * kept).sqrt() * deviation * random.sample::<f64, _>(StandardNormal);
         }
         *value = moment;
     }
-    let start = [track.start[0], track.start[1], 0.0].map(Dual::from);
-    let rows = replay_rows(hull, &disturbed, track.whole, start).rows;
-    let heading = rows.iter().zip(&track.heading);
+    let start = [signals.initial_velocity[0], signals.initial_velocity[1], 0.0].map(Dual::from);
+    let rows = replay_rows(hull, &disturbed, signals.whole_record, start).rows;
+    let heading = rows.iter().zip(&signals.heading);
     let heading = heading.map(|(row, read)| if read.is_finite() { row[0].value } else { f64::NAN }).collect();
-    let mut rates = vec![0.0; track.window_bounds.len() - 1];
-    window_mean_square(hull, &HullTrack { heading, ..track.clone() }, &mut rates, false)
+    let mut rates = vec![0.0; signals.window_bounds.len() - 1];
+    window_mean_square(hull, &HullSignals { heading, ..signals.clone() }, &mut rates, false)
 }

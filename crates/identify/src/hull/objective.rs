@@ -9,7 +9,7 @@ use ship::vessel::prime::PrimeHull;
 
 use super::form_prior::HullFormPrior;
 use super::replayed::{ReplayedWindow, replay_rows, replay_rows_in_lanes};
-use super::track::HullTrack;
+use super::track::HullSignals;
 use super::turn::HardTurn;
 
 /// Number of derivatives: with respect to the 25 coefficients of the largest form, and to the yaw rate at the start.
@@ -29,26 +29,27 @@ const MIN_GAIN: f64 = 1e-6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResidualDeviations {
     /// Standard deviation of the heading of a whole replay, rad.
-    pub whole: f64,
+    pub whole_heading: f64,
     /// Standard deviation of the heading in a window, rad.
-    pub window: f64,
+    pub window_heading: f64,
     /// Standard deviation of the speed, in units of U₀.
     pub speed: f64,
 }
 
 /// Minimum deviations of a record.
-const MIN_DEVIATIONS: ResidualDeviations = ResidualDeviations { whole: 1.0 * DEGREE, window: 0.2 * DEGREE, speed: 0.1 };
+const MIN_DEVIATIONS: ResidualDeviations =
+    ResidualDeviations { whole_heading: 1.0 * DEGREE, window_heading: 0.2 * DEGREE, speed: 0.1 };
 
 /// Deviations at the start of a search, so large that the hull stays near its prior.
 const FIRST_DEVIATIONS: ResidualDeviations =
-    ResidualDeviations { whole: 3.0 * DEGREE, window: 1.0 * DEGREE, speed: 0.3 };
+    ResidualDeviations { whole_heading: 3.0 * DEGREE, window_heading: 1.0 * DEGREE, speed: 0.3 };
 
 /// Mean square residuals of a record (headings in rad², speed in units of U₀²), and the initial yaw rate of the whole
 /// replay, U₀/L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Misfit {
-    pub whole: f64,
-    pub window: f64,
+    pub whole_heading: f64,
+    pub window_heading: f64,
     pub speed: f64,
     pub initial_yaw_rate: f64,
 }
@@ -63,7 +64,7 @@ struct Starts {
 /// Objective of the fit of a form with its priors to records.
 pub(super) struct HullObjective<'a> {
     prior: &'a HullFormPrior,
-    tracks: &'a [HullTrack],
+    hull_signals: &'a [HullSignals],
     deviations: Vec<ResidualDeviations>,
     starts: Vec<Starts>,
     /// `true` once the starts have been fitted.
@@ -83,11 +84,17 @@ struct WindowFit {
     read: usize,
 }
 
-fn window(hull: &PrimeHull<Dual<1>>, track: &HullTrack, ends: [usize; 2], [u, v]: [f64; 2], rate: f64) -> WindowFit {
+fn window(
+    hull: &PrimeHull<Dual<1>>,
+    signals: &HullSignals,
+    ends: [usize; 2],
+    [u, v]: [f64; 2],
+    rate: f64,
+) -> WindowFit {
     let start = [Dual::from(u), Dual::from(v), Dual::variable(rate, 0, 1.0)];
-    let ReplayedWindow { rows, end } = replay_rows(hull, track, ends, start);
+    let ReplayedWindow { rows, end } = replay_rows(hull, signals, ends, start);
     let pairs = || {
-        let measured = &track.heading[ends[0]..ends[1]];
+        let measured = &signals.heading[ends[0]..ends[1]];
         measured.iter().zip(&rows).filter(|(measured, _)| measured.is_finite())
     };
     let read = pairs().count();
@@ -108,16 +115,16 @@ fn window(hull: &PrimeHull<Dual<1>>, track: &HullTrack, ends: [usize; 2], [u, v]
 /// Replay of a window from the best initial yaw rate, which is returned in `rate`.
 fn window_from_best_rate(
     hull: &PrimeHull<Dual<1>>,
-    track: &HullTrack,
+    signals: &HullSignals,
     ends: [usize; 2],
     start: [f64; 2],
     rate: &mut f64,
 ) -> WindowFit {
-    let mut now = window(hull, track, ends, start, *rate);
+    let mut now = window(hull, signals, ends, start, *rate);
     for _ in 0..STEPS {
         let tried = STEP_SHARES.iter().find_map(|share| {
             let ahead = *rate + share * now.step;
-            let next = window(hull, track, ends, start, ahead);
+            let next = window(hull, signals, ends, start, ahead);
             (next.square < now.square).then_some((ahead, next))
         });
         let Some((ahead, next)) = tried else { break };
@@ -134,19 +141,19 @@ fn window_from_best_rate(
 /// the search of a window starts at the yaw rate at the end of the window before.
 fn replay_windows(
     hull: &PrimeHull<Dual<1>>,
-    track: &HullTrack,
+    signals: &HullSignals,
     window_bounds: &[usize],
     rates: &mut [f64],
     is_begun: bool,
     mut visit: impl FnMut(&WindowFit),
 ) {
-    let mut start = track.start;
+    let mut start = signals.initial_velocity;
     let mut before = rates[0];
     for (ends, rate) in window_bounds.windows(2).zip(rates) {
         if !is_begun {
             *rate = before;
         }
-        let replay = window_from_best_rate(hull, track, [ends[0], ends[1]], start, rate);
+        let replay = window_from_best_rate(hull, signals, [ends[0], ends[1]], start, rate);
         start = [replay.end[0], replay.end[1]];
         before = replay.end[2];
         visit(&replay);
@@ -157,24 +164,25 @@ fn replay_windows(
 /// returns these yaw rates; if `is_begun`, the search starts at its values.
 pub(super) fn window_mean_square(
     hull: &PrimeHull<Dual<1>>,
-    track: &HullTrack,
+    signals: &HullSignals,
     rates: &mut [f64],
     is_begun: bool,
 ) -> f64 {
     let (mut square, mut read) = (0.0, 0);
-    replay_windows(hull, track, &track.window_bounds, rates, is_begun, |replay| {
+    replay_windows(hull, signals, &signals.window_bounds, rates, is_begun, |replay| {
         (square, read) = (square + replay.square, read + replay.read);
     });
     square / read.max(1) as f64
 }
 
 impl<'a> HullObjective<'a> {
-    pub fn new(prior: &'a HullFormPrior, tracks: &'a [HullTrack]) -> Self {
+    pub fn new(prior: &'a HullFormPrior, hull_signals: &'a [HullSignals]) -> Self {
         assert!(prior.coefficients.len() < DIRECTIONS, "a form has fewer than {DIRECTIONS} coefficients");
-        let starts = |track: &HullTrack| Starts { whole: [0.0], windows: vec![0.0; track.window_bounds.len() - 1] };
-        let starts = tracks.iter().map(starts).collect();
-        let deviations = vec![FIRST_DEVIATIONS; tracks.len()];
-        Self { prior, tracks, deviations, starts, is_begun: false, turn: HardTurn::new() }
+        let starts =
+            |signals: &HullSignals| Starts { whole: [0.0], windows: vec![0.0; signals.window_bounds.len() - 1] };
+        let starts = hull_signals.iter().map(starts).collect();
+        let deviations = vec![FIRST_DEVIATIONS; hull_signals.len()];
+        Self { prior, hull_signals, deviations, starts, is_begun: false, turn: HardTurn::new() }
     }
 
     /// Mean square residuals of every record; `None` if the coefficients are not valid.
@@ -182,19 +190,19 @@ impl<'a> HullObjective<'a> {
         let values: Vec<Dual<1>> = at.iter().map(|&value| Dual::from(value)).collect();
         let hull = self.prior.form.with_coefficients(&values)?;
         let is_begun = std::mem::replace(&mut self.is_begun, true);
-        let misfit = |(track, starts): (&HullTrack, &mut Starts)| {
+        let misfit = |(signals, starts): (&HullSignals, &mut Starts)| {
             let mut misfit = Misfit::default();
-            replay_windows(&hull, track, &track.whole, &mut starts.whole, is_begun, |replay| {
-                misfit.whole = replay.square / replay.read.max(1) as f64;
-                let pairs = track.speed.iter().flatten().zip(&replay.rows);
+            replay_windows(&hull, signals, &signals.whole_record, &mut starts.whole, is_begun, |replay| {
+                misfit.whole_heading = replay.square / replay.read.max(1) as f64;
+                let pairs = signals.speed.iter().flatten().zip(&replay.rows);
                 let squares = pairs.map(|(measured, row)| (measured - row[1].hypot(row[2])).powi(2));
                 misfit.speed = squares.sum::<f64>() / replay.rows.len() as f64;
             });
             misfit.initial_yaw_rate = starts.whole[0];
-            misfit.window = window_mean_square(&hull, track, &mut starts.windows, is_begun);
+            misfit.window_heading = window_mean_square(&hull, signals, &mut starts.windows, is_begun);
             misfit
         };
-        Some(self.tracks.iter().zip(&mut self.starts).map(misfit).collect())
+        Some(self.hull_signals.iter().zip(&mut self.starts).map(misfit).collect())
     }
 
     /// Sets the deviations of every record to its residuals, but not below [`MIN_DEVIATIONS`].
@@ -202,8 +210,8 @@ impl<'a> HullObjective<'a> {
         let misfits = self.misfits(at).unwrap_or_default();
         for (deviations, misfit) in self.deviations.iter_mut().zip(misfits) {
             *deviations = ResidualDeviations {
-                whole: MIN_DEVIATIONS.whole.max(misfit.whole.sqrt()),
-                window: MIN_DEVIATIONS.window.max(misfit.window.sqrt()),
+                whole_heading: MIN_DEVIATIONS.whole_heading.max(misfit.whole_heading.sqrt()),
+                window_heading: MIN_DEVIATIONS.window_heading.max(misfit.window_heading.sqrt()),
                 speed: MIN_DEVIATIONS.speed.max(misfit.speed.sqrt()),
             };
         }
@@ -211,8 +219,8 @@ impl<'a> HullObjective<'a> {
 
     /// Weight of a record: its length in L/U₀ over the number of records. The error of the form is independent from
     /// ship length to ship length, but common to records of similar manoeuvres.
-    fn weight(&self, track: &HullTrack) -> f64 {
-        track.duration() / self.tracks.len() as f64
+    fn weight(&self, signals: &HullSignals) -> f64 {
+        signals.duration() / self.hull_signals.len() as f64
     }
 
     /// Value (θ − μ)ᵀ Λ (θ − μ) of the prior, preceded by Λ (μ − θ), half its negative gradient.
@@ -235,15 +243,15 @@ impl Objective for HullObjective<'_> {
         let (Some(misfits), Some(hull)) = (self.misfits(at), self.prior.form.with_coefficients(at)) else {
             return f64::INFINITY;
         };
-        let record_term = |((track, misfit), deviations): ((&HullTrack, Misfit), &ResidualDeviations)| {
-            let ResidualDeviations { whole, window, speed } = *deviations;
+        let record_term = |((signals, misfit), deviations): ((&HullSignals, Misfit), &ResidualDeviations)| {
+            let ResidualDeviations { whole_heading: whole, window_heading: window, speed } = *deviations;
             let share = |square: f64, deviation: f64| square / (deviation * deviation);
-            let headings = share(misfit.whole, whole) + share(misfit.window, window);
-            self.weight(track) * (headings + share(misfit.speed, speed))
+            let headings = share(misfit.whole_heading, whole) + share(misfit.window_heading, window);
+            self.weight(signals) * (headings + share(misfit.speed, speed))
         };
         self.prior_terms(at).1
             + self.turn.departures(&hull).iter().map(|departure| departure.powi(2)).sum::<f64>()
-            + self.tracks.iter().zip(misfits).zip(&self.deviations).map(record_term).sum::<f64>()
+            + self.hull_signals.iter().zip(misfits).zip(&self.deviations).map(record_term).sum::<f64>()
     }
 
     fn linearise(&mut self, at: &[f64], normal: &mut NormalEquations) -> f64 {
@@ -257,14 +265,14 @@ impl Objective for HullObjective<'_> {
             normal.matrix.ger(1.0, &by, &by, 1.0);
             normal.right_hand_side.axpy(-departure.value, &by, 1.0);
         }
-        for ((track, starts), deviations) in self.tracks.iter().zip(&self.starts).zip(&self.deviations) {
-            let ResidualDeviations { whole, window, speed } = *deviations;
-            let lengths = self.weight(track);
-            let read = track.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
+        for ((signals, starts), deviations) in self.hull_signals.iter().zip(&self.starts).zip(&self.deviations) {
+            let ResidualDeviations { whole_heading: whole, window_heading: window, speed } = *deviations;
+            let lengths = self.weight(signals);
+            let read = signals.heading.iter().filter(|heading| heading.is_finite()).count() as f64;
             let weight = |deviation: f64, rows: f64| lengths / (rows * deviation * deviation);
-            let speed_weight = Some(weight(speed, track.time.len() as f64));
-            add(normal, &hull, track, &track.whole, &starts.whole, weight(whole, read), speed_weight);
-            add(normal, &hull, track, &track.window_bounds, &starts.windows, weight(window, read), None);
+            let speed_weight = Some(weight(speed, signals.time.len() as f64));
+            add(normal, &hull, signals, &signals.whole_record, &starts.whole, weight(whole, read), speed_weight);
+            add(normal, &hull, signals, &signals.window_bounds, &starts.windows, weight(window, read), None);
         }
         value
     }
@@ -275,24 +283,24 @@ impl Objective for HullObjective<'_> {
 fn add(
     normal: &mut NormalEquations,
     hull: &PrimeHull<Dual<DIRECTIONS>>,
-    track: &HullTrack,
+    signals: &HullSignals,
     window_bounds: &[usize],
     rates: &[f64],
     weight: f64,
     speed_weight: Option<f64>,
 ) {
     let unknowns = normal.right_hand_side.len();
-    let mut start = track.start.map(Dual::from);
+    let mut start = signals.initial_velocity.map(Dual::from);
     for (ends, &rate) in window_bounds.windows(2).zip(rates) {
         // Surge and sway at this start do not depend on its yaw rate.
         start.iter_mut().for_each(|velocity| velocity.derivatives[unknowns] = 0.0);
         let variable = Dual::variable(rate, unknowns, 1.0);
         let ReplayedWindow { rows, end } =
-            replay_rows_in_lanes(hull, track, [ends[0], ends[1]], [start[0], start[1], variable]);
+            replay_rows_in_lanes(hull, signals, [ends[0], ends[1]], [start[0], start[1], variable]);
         start = [end[0], end[1]];
-        let (columns, shares) = heading_columns(&rows, &track.heading[ends[0]..ends[1]], unknowns);
+        let (columns, shares) = heading_columns(&rows, &signals.heading[ends[0]..ends[1]], unknowns);
         add_squares(normal, &columns, unknowns + 1, weight);
-        let Some((weight, measured)) = speed_weight.zip(track.speed.as_ref()) else { continue };
+        let Some((weight, measured)) = speed_weight.zip(signals.speed.as_ref()) else { continue };
         let mut columns = DMatrix::zeros(rows.len(), unknowns + 2);
         for (i, [_, u, v]) in rows.iter().enumerate() {
             let replayed_speed = u.hypot(*v);
@@ -333,23 +341,23 @@ fn heading_columns(rows: &[[Dual<DIRECTIONS>; 3]], measured: &[f64], unknowns: u
 /// coefficients. `None` if the coefficients are not valid.
 pub(super) fn heading_variances(
     prior: &HullFormPrior,
-    track: &HullTrack,
+    signals: &HullSignals,
     values: &[f64],
     covariance: &DMatrix<f64>,
 ) -> Option<[Vec<f64>; 2]> {
-    let rate = HullObjective::new(prior, std::slice::from_ref(track)).misfits(values)?[0].initial_yaw_rate;
+    let rate = HullObjective::new(prior, std::slice::from_ref(signals)).misfits(values)?[0].initial_yaw_rate;
     let unknowns = values.len();
     let variables: Vec<Dual<DIRECTIONS>> =
         values.iter().enumerate().map(|(place, &value)| Dual::variable(value, place, 1.0)).collect();
-    let [u, v] = track.start.map(Dual::from);
+    let [u, v] = signals.initial_velocity.map(Dual::from);
     let start = [u, v, Dual::variable(rate, unknowns, 1.0)];
     let ReplayedWindow { rows, .. } =
-        replay_rows_in_lanes(&prior.form.with_coefficients(&variables)?, track, track.whole, start);
-    let (columns, _) = heading_columns(&rows, &track.heading, unknowns);
+        replay_rows_in_lanes(&prior.form.with_coefficients(&variables)?, signals, signals.whole_record, start);
+    let (columns, _) = heading_columns(&rows, &signals.heading, unknowns);
     let by = columns.columns(0, unknowns);
     let spread = by * covariance;
     let variance = (0..by.nrows()).map(|row| spread.row(row).dot(&by.row(row))).collect();
-    let read = track.time.iter().zip(&track.heading).filter(|(_, heading)| heading.is_finite());
+    let read = signals.time.iter().zip(&signals.heading).filter(|(_, heading)| heading.is_finite());
     Some([read.map(|(time, _)| *time).collect(), variance])
 }
 

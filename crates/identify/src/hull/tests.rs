@@ -10,12 +10,14 @@ use ship::vessel::mmg::Mmg;
 use ship::vessel::prime::HullModel;
 use ship::vessel::prior::HullParticulars;
 use ship::vessel::scaled::ScaledHull;
-use ship::{Dynamics, Input, MeasuredChannels, Motion, Particulars};
+use ship::{Dynamics, MeasuredChannels, Motion, Particulars, ShipInput};
 use trial::{Channel, Columns, RecordOrigin, Trial, relative_wind};
 
 use super::objective::HullObjective;
-use super::track::HullTrack;
-use super::{HullEstimate, HullFitError, HullFormPrior, HullReference, MisfitMoment, fit, fit_all, supported_hulls};
+use super::track::HullSignals;
+use super::{
+    HullEstimate, HullFitError, HullFormPrior, HullReference, MisfitMoment, fit, fit_all_forms, supported_hulls,
+};
 
 pub(super) const LENGTH: f64 = 7.0;
 pub(super) const SPEED: f64 = 1.2;
@@ -31,7 +33,7 @@ fn form() -> HullModel {
 
 pub(super) fn hull(truth: &[f64; 19]) -> ScaledHull {
     let hull = form().with_coefficients(truth).expect("a ship");
-    ScaledHull { hull, length: LENGTH, speed: SPEED, propeller: None }
+    ScaledHull { hull, length: LENGTH, speed: SPEED, propeller_rate: None }
 }
 
 /// Record of a zig-zag at 8 Hz, in which `moment` (rudder angle, rad, as a function of the row number) acts in addition
@@ -55,8 +57,11 @@ pub(super) fn record(ship: &dyn Dynamics, [angle, change]: [f64; 2], moment: imp
         place = [north + step * (u * cos - v * sin), east + step * (u * sin + v * cos)];
         let next = rudder + (order - rudder).clamp(-rate * step, rate * step);
         let disturbance = moment(row);
-        let input =
-            |now: f64| Input { rudder: rudder + (next - rudder) * (now - t) / step, disturbance, ..Input::default() };
+        let input = |now: f64| ShipInput {
+            rudder: rudder + (next - rudder) * (now - t) / step,
+            disturbance_rudder: disturbance,
+            ..ShipInput::default()
+        };
         solver.step(ship, t, step, &mut state, input);
         rudder = next;
         if order.signum() * state[0] >= from_deg(change) {
@@ -81,14 +86,14 @@ fn quadratic(trials: &[Trial]) -> HullEstimate {
 fn a_hull_of_the_form_comes_back() {
     let fitted = quadratic(&records(|_| 0.0));
     for (place, (prior, truth)) in fitted.prior.coefficients.iter().zip(TRUTH).enumerate() {
-        let (value, sd) = (fitted.values[place], fitted.covariance[(place, place)].sqrt());
+        let (value, sd) = (fitted.coefficients[place], fitted.covariance[(place, place)].sqrt());
         assert!((value - truth).abs() < 2.5 * sd, "{}: {value} ± {sd}, {truth}", prior.symbol);
         assert!(prior.key != "Nd" || (value / truth - 1.0).abs() < 0.15, "{}: {value} {truth}", prior.symbol);
     }
     for left in &fitted.residuals {
         assert!(to_deg(left.whole_replay_rms) < 0.2, "{}: {}°", left.name, to_deg(left.whole_replay_rms));
     }
-    assert!(fitted.moment.deviation < from_deg(0.2), "{:?}", fitted.moment);
+    assert!(fitted.moment.sd_rudder < from_deg(0.2), "{:?}", fitted.moment);
 }
 
 /// Record of rudder, heading and speed, with constant channels.
@@ -97,7 +102,7 @@ fn beside_constants(trial: &Trial, constants: &[(Channel, f64)]) -> Trial {
     let recorded = recorded.map(|channel| (channel, trial.channel(channel).expect("recorded").to_vec()));
     let constants = constants.iter().map(|&(channel, value)| (channel, vec![value; trial.len()]));
     let channels = recorded.into_iter().chain(constants).collect();
-    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    let columns = Columns { time: trial.time().to_vec(), channels, unknown_columns: Vec::new() };
     let ship = trial.particulars().expect("declared");
     Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }
@@ -114,15 +119,15 @@ impl Dynamics for InWind {
         Dynamics::<f64>::approach(&self.0, heading, yaw_rate, state);
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         let Self(ship, [speed, from]) = self;
         let (wind, from) = relative_wind(*speed, *from, state[2].hypot(state[3]), state[0]);
         let measured =
             MeasuredChannels { wind_speed: Some(wind), wind_from: Some(from), ..MeasuredChannels::default() };
-        ship.rates(t, state, &Input { measured, ..*input }, rate);
+        ship.rates(t, state, &ShipInput { measured, ..*input }, rate);
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[f64], input: &ShipInput) -> Motion {
         self.0.motion(t, state, input)
     }
 
@@ -141,9 +146,9 @@ fn a_measured_wind_tells_how_it_acts() {
     let of_wind = [(Channel::WindTrueSpeed, wind[0]), (Channel::WindTrueFrom, wind[1])];
     let measured = blown.each_ref().map(|trial| beside_constants(trial, &of_wind));
     let [found, blind] = [measured, blown].map(|trials| quadratic(&trials));
-    let [windage, truth] = [found.values[18], TRUTH[18]];
+    let [windage, truth] = [found.coefficients[18], TRUTH[18]];
     assert!((windage / truth - 1.0).abs() < 0.05, "{windage}");
-    assert_eq!(blind.values[18], blind.prior.coefficients[18].mean);
+    assert_eq!(blind.coefficients[18], blind.prior.coefficients[18].mean);
     assert!(
         3.0 * found.mean_square_heading_error().sqrt() < blind.mean_square_heading_error().sqrt(),
         "{found:?} {blind:?}"
@@ -160,9 +165,9 @@ fn a_hull_of_another_form_is_foreseen_as_well() {
     for form in HullModel::candidates(Some(&dimensions)) {
         let prior = HullFormPrior::from_form(form);
         let estimate = fit(std::slice::from_ref(&fitted), &prior).expect("a fit");
-        let tracks = [HullTrack::from_trial(&other, &estimate.reference).expect("a record")];
-        let mut problem = HullObjective::new(&prior, &tracks);
-        let left = to_deg(problem.misfits(estimate.values.as_slice()).expect("a ship")[0].whole.sqrt());
+        let hull_signals = [HullSignals::from_trial(&other, &estimate.reference).expect("a record")];
+        let mut problem = HullObjective::new(&prior, &hull_signals);
+        let left = to_deg(problem.misfits(estimate.coefficients.as_slice()).expect("a ship")[0].whole_heading.sqrt());
         assert!(left < 3.5, "{}: {left}", prior.form.as_str());
     }
 }
@@ -174,7 +179,7 @@ fn the_mirrored_records_give_the_mirrored_hull() {
     let (original, reflected) = (quadratic(&trials), quadratic(&mirrored));
     for (place, coefficient) in original.prior.coefficients.iter().enumerate() {
         let side = if ["b", "delta_r"].contains(&coefficient.key) { -1.0 } else { 1.0 };
-        let [value, other] = [original.values[place], side * reflected.values[place]];
+        let [value, other] = [original.coefficients[place], side * reflected.coefficients[place]];
         assert!((value - other).abs() < 1e-3 * coefficient.sd, "{}: {value} {other}", coefficient.symbol);
     }
 }
@@ -186,7 +191,7 @@ fn in_the_mirror(trial: &Trial) -> Trial {
         (Channel::Heading, negative(trial.heading())),
         (Channel::Speed, trial.channel(Channel::Speed).expect("a speed").to_vec()),
     ];
-    let columns = Columns { time: trial.time().to_vec(), channels: channels.into(), unknown: Vec::new() };
+    let columns = Columns { time: trial.time().to_vec(), channels: channels.into(), unknown_columns: Vec::new() };
     let ship = trial.particulars().expect("declared");
     Trial::new("mirrored", trial.origin().clone(), columns).expect("a record").with_particulars(ship)
 }
@@ -201,7 +206,7 @@ fn a_random_moment_is_found_again() {
         let fresh: f64 = random.sample(StandardNormal);
         moment.push(kept * moment[moment.len() - 1] + (1.0 - kept * kept).sqrt() * deviation * fresh);
     }
-    let MisfitMoment { deviation: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
+    let MisfitMoment { sd_rudder: found, correlation_time } = quadratic(&records(|row| moment[row])).moment;
     assert!((found / deviation - 1.0).abs() < 0.34, "{}°", to_deg(found));
     assert!((correlation_time * SPEED / LENGTH - 2.0).abs() < 1e-12, "{correlation_time}");
 }
@@ -216,7 +221,8 @@ fn fitted_to(channels: &[Channel]) -> HullEstimate {
             (channel, trial.channel(channel).expect("recorded").iter().map(noise).collect::<Vec<f64>>())
         };
         let channels = channels.iter().map(|signal| read(*signal)).chain([(Channel::Rudder, trial.rudder().to_vec())]);
-        let columns = Columns { time: trial.time().to_vec(), channels: channels.collect(), unknown: Vec::new() };
+        let columns =
+            Columns { time: trial.time().to_vec(), channels: channels.collect(), unknown_columns: Vec::new() };
         let ship = trial.particulars().expect("declared");
         Trial::new(trial.name(), trial.origin().clone(), columns).expect("a record").with_particulars(ship)
     };
@@ -233,21 +239,24 @@ fn positions_stand_for_a_speed_that_was_not_recorded() {
             .map(fitted_to);
     let apart = |other: &HullEstimate| {
         let sd = speed.covariance.diagonal().map(f64::sqrt);
-        (&speed.values - &other.values).component_div(&sd).amax()
+        (&speed.coefficients - &other.coefficients).component_div(&sd).amax()
     };
     assert!(apart(&positions) < 0.05 && apart(&heading) > 0.1, "{} {}", apart(&positions), apart(&heading));
-    assert_eq!((both.values, north.values), (speed.values.clone(), heading.values));
+    assert_eq!((both.coefficients, north.coefficients), (speed.coefficients.clone(), heading.coefficients));
 }
 
 #[test]
 fn the_hulls_that_records_speak_for_are_near_them() {
-    let found = supported_hulls(fit_all(&records(|_| 0.0), &[]), f64::INFINITY);
+    let found = supported_hulls(fit_all_forms(&records(|_| 0.0), &[]), f64::INFINITY);
     // All three forms are fitted; the quadratic form is the truth, and forms with three times its residual are left
     // out.
     let left: Vec<f64> = found.iter().map(|hull| hull.mean_square_heading_error().sqrt()).collect();
     let least = left.iter().copied().fold(f64::INFINITY, f64::min);
     assert!(found[0].prior.form.as_str() == "quadratic" && left.iter().all(|rms| *rms <= 3.0 * least), "{left:?}");
-    assert!(supported_hulls(fit_all(&records(|_| 0.0), &[]), 1e-9).is_empty(), "another model that leaves nothing");
+    assert!(
+        supported_hulls(fit_all_forms(&records(|_| 0.0), &[]), 1e-9).is_empty(),
+        "another model that leaves nothing"
+    );
 }
 
 /// A start near rest is relative to the approach speed at the propeller rate of the record.
@@ -256,7 +265,7 @@ fn a_trial_at_slow_ahead_is_one() {
     let trial = &records(|_| 0.0)[0];
     let slow = beside_constants(trial, &[(Channel::PropellerRate, 3.5)]);
     let reference = HullReference { length: LENGTH, speed: SPEED / 0.35, propeller_rate: Some(10.0) };
-    assert!((HullTrack::from_trial(&slow, &reference).expect("a track").start[0] - 0.35).abs() < 1e-6);
+    assert!((HullSignals::from_trial(&slow, &reference).expect("a record").initial_velocity[0] - 0.35).abs() < 1e-6);
 }
 
 #[test]
@@ -267,7 +276,7 @@ fn records_that_tell_no_hull_are_refused() {
         let channels = [Channel::Heading, Channel::Speed].map(|key| (key, trial.channel(key).expect("one").to_vec()));
         let rudder = (Channel::Rudder, trial.rudder().to_vec());
         let channels = channels.into_iter().chain([rudder]).collect();
-        let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+        let mut columns = Columns { time: trial.time().to_vec(), channels, unknown_columns: Vec::new() };
         change(&mut columns);
         let bare = Trial::new("bare", trial.origin().clone(), columns).expect("a record");
         let known = bare.clone().with_particulars(Particulars { length: LENGTH, speed: SPEED });

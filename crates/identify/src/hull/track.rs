@@ -48,7 +48,7 @@ impl HullReference {
 
 /// Record in units of L and U₀.
 #[derive(Debug, Clone)]
-pub(super) struct HullTrack {
+pub(super) struct HullSignals {
     /// Time, L/U₀.
     pub time: Vec<f64>,
     /// L/U₀, s.
@@ -66,16 +66,16 @@ pub(super) struct HullTrack {
     /// Speed, in units of U₀; `None` if it was not recorded and does not follow from positions.
     pub speed: Option<Vec<f64>>,
     /// Surge and sway velocity in the first row, in units of U₀.
-    pub start: [f64; 2],
+    pub initial_velocity: [f64; 2],
     /// First rows of the windows, and the number of rows.
     pub window_bounds: Vec<usize>,
     /// First row and number of rows of the record, as a single window.
-    pub whole: [usize; 2],
+    pub whole_record: [usize; 2],
 }
 
-impl HullTrack {
-    /// Track of a record. Fails for a record with too few headings, a clock that does not fit this length and speed, or
-    /// a start near rest.
+impl HullSignals {
+    /// Signals of a record. Fails for a record with too few headings, a clock that does not fit this length and speed,
+    /// or a start near rest.
     pub fn from_trial(trial: &Trial, reference: &HullReference) -> Result<Self, HullFitError> {
         let ship_length_time = reference.ship_length_time();
         let [row_interval, whole] = [trial.sampling_period(), trial.duration()].map(|time| time / ship_length_time);
@@ -83,17 +83,17 @@ impl HullTrack {
             return Err(HullFitError::ImplausibleTimes { trial: trial.name().to_owned(), row_interval, whole });
         }
         let too_few = || HullFitError::TooFewHeadings(trial.name().to_owned());
-        let track = Self::cut(trial, reference).ok_or_else(too_few)?;
+        let signals = Self::cut(trial, reference).ok_or_else(too_few)?;
         // Approach speed at the propeller rate of this record, which may differ from the reference.
         let approach = trial.particulars().map_or(reference.speed, |particulars| particulars.speed);
-        let speed_ratio = track.start[0] * reference.length / (track.ship_length_time * approach);
+        let speed_ratio = signals.initial_velocity[0] * reference.length / (signals.ship_length_time * approach);
         match speed_ratio < MIN_START_SPEED {
             true => Err(HullFitError::StartsNearRest { trial: trial.name().to_owned(), speed_ratio }),
-            false => Ok(track),
+            false => Ok(signals),
         }
     }
 
-    /// Track of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
+    /// Signals of a rudder (rad) put over instantaneously on a steady approach and held for `duration` (L/U₀), without
     /// headings.
     pub fn from_held_rudder(rudder: f64, duration: f64) -> Self {
         Self {
@@ -103,8 +103,8 @@ impl HullTrack {
             moment: vec![0.0; 2],
             wind: None,
             window_bounds: vec![0, 2],
-            whole: [0, 2],
-            start: [1.0, 0.0],
+            whole_record: [0, 2],
+            initial_velocity: [1.0, 0.0],
             ship_length_time: 1.0,
             speed: None,
             time: vec![0.0, duration],
@@ -155,15 +155,15 @@ impl HullTrack {
             moment: vec![0.0; count],
             wind,
             window_bounds: window_bounds(&time),
-            whole: [0, count],
-            start: [surge, drift],
+            whole_record: [0, count],
+            initial_velocity: [surge, drift],
             ship_length_time,
             time,
             speed,
         })
     }
 
-    /// Duration of the track, L/U₀.
+    /// Duration of the record, L/U₀.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }

@@ -6,7 +6,7 @@ use ship::angle::DEGREE;
 use ship::vessel::prime::PrimeHull;
 
 use super::replayed::replay_rows;
-use super::track::HullTrack;
+use super::track::HullSignals;
 
 /// Rudder angle of the turn, rad.
 const RUDDER_RAD: f64 = 35.0 * DEGREE;
@@ -29,17 +29,17 @@ const PIVOT: [f64; 2] = [0.35, 0.12];
 
 /// Turns with the rudder put over to either side and held.
 #[derive(Debug, Clone)]
-pub(super) struct HardTurn([HullTrack; 2]);
+pub(super) struct HardTurn([HullSignals; 2]);
 
 impl HardTurn {
     pub fn new() -> Self {
-        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullTrack::from_held_rudder(rudder, DURATION_LENGTHS)))
+        Self([RUDDER_RAD, -RUDDER_RAD].map(|rudder| HullSignals::from_held_rudder(rudder, DURATION_LENGTHS)))
     }
 
     /// Departures of r L/U and of the pivot point, means of both sides, from their prior, in standard deviations.
     pub fn departures<R: Real>(&self, hull: &PrimeHull<R>) -> [R; 2] {
-        let [starboard, port] = self.0.each_ref().map(|track| {
-            let [u, v, r] = replay_rows(hull, track, track.whole, [1.0, 0.0, 0.0].map(R::from)).end;
+        let [starboard, port] = self.0.each_ref().map(|signals| {
+            let [u, v, r] = replay_rows(hull, signals, signals.whole_record, [1.0, 0.0, 0.0].map(R::from)).end;
             [r / u.hypot(v), -v / r]
         });
         let mean = [(starboard[0] - port[0]) * 0.5, (starboard[1] + port[1]) * 0.5];
@@ -51,7 +51,7 @@ impl HardTurn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ship::Input;
+    use ship::ShipInput;
     use ship::integrate::RungeKutta4;
     use ship::ships::{Ship, ShipModel};
     use ship::vessel::prime::HullModel;
@@ -59,7 +59,7 @@ mod tests {
     /// Published hulls turn as expected within 2.5 standard deviations, as do the forms before any record.
     #[test]
     fn hulls_turn_as_ships_do() {
-        let turns: Vec<(String, [f64; 2])> = ship::ships::all().iter().filter_map(steady).collect();
+        let turns: Vec<(String, [f64; 2])> = ship::ships::all_ships().iter().filter_map(steady).collect();
         assert!(turns.len() > 3);
         let departs = |value: f64, [mean, sd]: [f64; 2]| (value - mean).abs() > 2.5 * sd;
         for (name, figures) in turns {
@@ -80,7 +80,7 @@ mod tests {
         hull.approach(0.0, 0.0, &mut state);
         let mut solver = RungeKutta4::new(hull.dimension());
         for row in 0..600 {
-            let input = |_: f64| Input { rudder: RUDDER_RAD, ..Input::default() };
+            let input = |_: f64| ShipInput { rudder: RUDDER_RAD, ..ShipInput::default() };
             solver.step(hull.as_ref(), f64::from(row) * step, step, &mut state, input);
         }
         let [rate, surge, sway] = [1, 2, 3].map(|place| state[place]);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use estimation::column::{dot, gram, project, sum};
+use estimation::column::{dot, gram, subtract_projection, sum};
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 
 use crate::error::IdentifyError;
@@ -50,7 +50,7 @@ impl<'a> IntegratedStretch<'a> {
         let length = dot(&unit, &unit).sqrt();
         let scale = 1.0 / length;
         unit.iter_mut().for_each(|s| *s *= scale);
-        let removed = self.columns.each_mut().map(|column| project(&unit, column));
+        let removed = self.columns.each_mut().map(|column| subtract_projection(&unit, column));
         let [x0, x1, x2, y] = &self.columns;
         let sums = Matrix4::from(gram([x0, x1, x2, y]));
         for i in 0..SHARED_PARAMETERS {

@@ -13,9 +13,9 @@ pub(super) struct ResidualNoise {
     /// Number of equations minus number of unknowns.
     pub degrees_of_freedom: f64,
     /// Ratio of equations to degrees of freedom: the correction for the noise absorbed by the fit.
-    pub finite_sample: f64,
+    pub small_sample_factor: f64,
     /// Lag-1 autocorrelation of the heading noise.
-    pub lag1: f64,
+    pub lag1_correlation: f64,
     /// Σ z zᵀ, with z the derivative of Xᵀe with respect to the noise of one heading; times the variance it is the
     /// covariance of Xᵀe.
     pub influence: Matrix3<f64>,
@@ -44,7 +44,14 @@ impl ResidualNoise {
         let variance = (degrees_of_freedom > 0.0).then(|| squares / degrees_of_freedom);
         let finite_sample = count as f64 / degrees_of_freedom;
         let lag1 = if squares > 0.0 { products / squares } else { 0.0 };
-        Self { variance, degrees_of_freedom, finite_sample, lag1, influence, scores }
+        Self {
+            variance,
+            degrees_of_freedom,
+            small_sample_factor: finite_sample,
+            lag1_correlation: lag1,
+            influence,
+            scores,
+        }
     }
 }
 

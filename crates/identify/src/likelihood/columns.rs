@@ -49,7 +49,7 @@ impl MotionColumns {
 
 impl RateColumns {
     /// Columns of the yaw rate: φ₁', G' and H'.
-    pub fn all(&self) -> [&[f64]; 3] {
+    pub fn yaw_rates(&self) -> [&[f64]; 3] {
         [&self.homogeneous, &self.rudder, &self.constant]
     }
 

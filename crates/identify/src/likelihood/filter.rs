@@ -1,7 +1,7 @@
 //! Kalman filter of a noise law on a schedule.
 
 use estimation::kalman::whitener::Whitener;
-use estimation::kalman::{Filter, StateSensor, System};
+use estimation::kalman::{KalmanFilter, LinearSystem, StateSensor};
 use estimation::with_states;
 use trial::noise_model::MomentKind;
 
@@ -12,10 +12,12 @@ use super::transition::transition_step;
 /// Whitening filter for columns of one record, in units of the compass error, with variances of the initial heading and
 /// yaw rate in units of the compass variance.
 pub fn whitener(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> Whitener {
-    with_states!(parameters.states(), N => Filter::<N>::new(system(schedule, parameters, initial)).into_whitener())
+    with_states!(parameters.states(), N => {
+        KalmanFilter::<N>::new(system(schedule, parameters, initial)).into_whitener()
+    })
 }
 
-fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> System<N> {
+fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, initial: [f64; 2]) -> LinearSystem<N> {
     let compass = parameters.compass_state();
     let mut covariance = [[0.0; N]; N];
     for (place, variance) in initial.into_iter().enumerate() {
@@ -35,5 +37,5 @@ fn system<const N: usize>(schedule: &Schedule, parameters: &NoiseParameters, ini
         StateSensor { state: 1, second_state: None, variance: parameters.gyro_error_sd * parameters.gyro_error_sd },
     ];
     let steps = schedule.intervals.iter().map(|interval| transition_step(parameters, interval)).collect();
-    System { steps, sensors, readings: schedule.readings.clone(), initial: covariance }
+    LinearSystem { steps, sensors, readings: schedule.readings.clone(), initial_covariance: covariance }
 }

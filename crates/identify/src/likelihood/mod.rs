@@ -30,7 +30,7 @@ use trial::noise_model::NoiseModel;
 pub use filter::whitener;
 pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
-pub use track::{MotionColumns, Track};
+pub use track::{MotionColumns, TrialSignals};
 
 /// Log-likelihood of the headings of a trial (and of the yaw rates, if `noise` has a rate-gyro error) for given ship
 /// parameters and a given noise law.
@@ -39,21 +39,21 @@ pub use track::{MotionColumns, Track};
 /// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite if a response
 /// overflows.
 pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
-    let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
-    let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
+    let signals = TrialSignals::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
+    let schedule = Schedule::new(&signals, noise.rudder_sd > 0.0);
     let parameters = NoiseVector::from_model(noise, ship).parameters(ship.inverse_T);
     let unit = noise.heading_sd;
     let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns start from rest at the first row, where the prior applies.
     let mut columns = MotionColumns::default();
-    track.fill_from(false, ship.inverse_T, &mut columns);
+    signals.fill_from(false, ship.inverse_T, &mut columns);
     let offset = ship.K_over_T * ship.rudder_bias;
     let motion = |forced: &[f64], constant_response: &[f64]| -> Vec<f64> {
         forced.iter().zip(constant_response).map(|(g, h)| ship.K_over_T * g + offset * h).collect()
     };
     let heading = motion(&columns.rudder, &columns.constant);
     let rate = motion(&columns.rates.rudder, &columns.rates.constant);
-    let mut residual = schedule.stacked(&track.heading, &track.yaw_rates);
+    let mut residual = schedule.stacked(&signals.heading, &signals.yaw_rates);
     let replayed = schedule.stacked(&heading, &rate);
     residual.iter_mut().zip(&replayed).for_each(|(measured, replayed)| *measured -= replayed);
     filter.apply(&mut [&mut residual]);

@@ -19,7 +19,7 @@ pub struct NoiseVector {
     /// `true` if the compass error has a correlation time.
     pub has_coloured_compass: bool,
     /// Logarithms, in the order above; inactive entries are ignored.
-    pub log: [f64; NOISE_ENTRIES],
+    pub log_entries: [f64; NOISE_ENTRIES],
 }
 
 /// Index of log(q/σ) in a noise vector.
@@ -46,7 +46,7 @@ impl NoiseVector {
             moment: if noise.moment_level > 0.0 { noise.moment } else { MomentKind::None },
             has_rudder_error: noise.rudder_sd > 0.0,
             has_coloured_compass: noise.heading_correlation_time.is_some(),
-            log: [
+            log_entries: [
                 log(noise.moment_level / unit),
                 log(noise.moment_correlation_time),
                 log(ship.K_over_T.abs() * noise.rudder_sd / unit),
@@ -59,16 +59,16 @@ impl NoiseVector {
     /// Noise law of this vector, for a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad; with
     /// `gyro` it includes the rate-gyro error.
     pub fn to_model(&self, K_over_T: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
-        let size = |entry: usize| heading_sd * self.log[entry].exp();
+        let size = |entry: usize| heading_sd * self.log_entries[entry].exp();
         let has_moment = self.moment != MomentKind::None;
         NoiseModel {
             heading_sd,
-            heading_correlation_time: self.has_coloured_compass.then(|| self.log[COMPASS_INDEX].exp()),
+            heading_correlation_time: self.has_coloured_compass.then(|| self.log_entries[COMPASS_INDEX].exp()),
             yaw_rate_sd: gyro.then(|| size(GYRO_INDEX)),
             moment: self.moment,
             moment_level: if has_moment { size(LEVEL_INDEX) } else { 0.0 },
             moment_correlation_time: match self.moment {
-                MomentKind::OrnsteinUhlenbeck => self.log[CORRELATION_INDEX].exp(),
+                MomentKind::OrnsteinUhlenbeck => self.log_entries[CORRELATION_INDEX].exp(),
                 MomentKind::White => 0.0,
                 MomentKind::None | MomentKind::Walk => f64::INFINITY,
             },
@@ -90,18 +90,18 @@ impl NoiseVector {
 
     /// Noise parameters for this 1/T.
     pub fn parameters(&self, inverse_T: f64) -> NoiseParameters {
-        let size = |entry: usize| self.log[entry].exp();
+        let size = |entry: usize| self.log_entries[entry].exp();
         NoiseParameters {
             inverse_T,
             moment: self.moment,
             moment_level: size(LEVEL_INDEX),
             moment_inverse_time: if self.moment == MomentKind::OrnsteinUhlenbeck {
-                (-self.log[CORRELATION_INDEX]).exp()
+                (-self.log_entries[CORRELATION_INDEX]).exp()
             } else {
                 0.0
             },
             rudder_error_sd: self.has_rudder_error.then(|| size(RUDDER_INDEX)),
-            compass_inverse_time: self.has_coloured_compass.then(|| (-self.log[COMPASS_INDEX]).exp()),
+            compass_inverse_time: self.has_coloured_compass.then(|| (-self.log_entries[COMPASS_INDEX]).exp()),
             gyro_error_sd: size(GYRO_INDEX),
         }
     }

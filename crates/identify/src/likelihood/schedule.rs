@@ -1,8 +1,8 @@
 //! Schedule of the readings of a record: their order and the time steps between them, each kind of step stored once.
 
-use estimation::kalman::Reading;
+use estimation::kalman::SensorReading;
 
-use super::track::{Track, durations_differ};
+use super::track::{TrialSignals, durations_differ};
 
 /// Index of the compass among the sensors.
 pub const COMPASS_SENSOR: usize = 0;
@@ -34,19 +34,20 @@ pub struct Schedule {
     /// Distinct intervals between readings, which the readings refer to by index.
     pub intervals: Vec<ReadingInterval>,
     /// Readings in order.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<SensorReading>,
 }
 
 /// Number of recent kinds of steps that are compared with the next step: steps of a clock repeat soon or not at all.
 const MAX_RECENT_KINDS: usize = 16;
 
 impl Schedule {
-    /// Readings of a track; with `by_row` an interval between readings is divided at the rows of the rudder in it.
-    pub fn new(track: &Track, by_row: bool) -> Self {
-        let time = &track.time;
+    /// Readings of a trial; with `by_row` an interval between readings is divided at the rows of the rudder in it.
+    pub fn new(signals: &TrialSignals, by_row: bool) -> Self {
+        let time = &signals.time;
         let mut schedule = Self { intervals: Vec::new(), readings: Vec::new() };
         let mut last = None;
-        let (mut headings, mut rates) = (track.heading_rows.iter().peekable(), track.yaw_rate_rows.iter().peekable());
+        let (mut headings, mut rates) =
+            (signals.heading_rows.iter().peekable(), signals.yaw_rate_rows.iter().peekable());
         let mut pieces = Vec::new();
         while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
             let step = last.map(|last: usize| {
@@ -61,10 +62,10 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading::new(step, COMPASS_SENSOR));
+                schedule.readings.push(SensorReading::new(step, COMPASS_SENSOR));
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading::new(step.filter(|_| !both), GYRO_SENSOR));
+                schedule.readings.push(SensorReading::new(step.filter(|_| !both), GYRO_SENSOR));
             }
         }
         schedule
@@ -86,7 +87,8 @@ impl Schedule {
             return heading.to_vec();
         }
         let (mut heading, mut yaw_rate) = (heading.iter(), yaw_rate.iter());
-        let next = |entry: &Reading| if entry.sensor() == COMPASS_SENSOR { heading.next() } else { yaw_rate.next() };
+        let next =
+            |entry: &SensorReading| if entry.sensor() == COMPASS_SENSOR { heading.next() } else { yaw_rate.next() };
         let mut column = Vec::with_capacity(self.readings.len());
         column.extend(self.readings.iter().filter_map(next).copied());
         column

@@ -1,27 +1,32 @@
-//! Columns of a track with their derivatives with respect to 1/T.
+//! Columns of a trial with their derivatives with respect to 1/T.
 
-use estimation::lanes::{Kernel, run};
+use estimation::lanes::{Kernel, run_kernel};
 use ship::first_order::TangentTransition;
 
 use super::columns::MotionColumns;
-use super::track::{RudderCorner, Track, TrackStep, durations_differ, is_backward};
+use super::track::{RudderCorner, SignalStep, TrialSignals, durations_differ, is_backward};
 
-/// Fills the columns of a track and their derivatives with respect to a = `inverse_T`, 1/s.
-pub fn fill_with_tangents(track: &Track, inverse_T: f64, columns: &mut MotionColumns, tangents: &mut MotionColumns) {
-    let (rows, anchor) = (track.time.len(), track.anchor_row(is_backward(inverse_T)));
-    let has_rates = !track.yaw_rate_rows.is_empty();
+/// Fills the columns of a trial and their derivatives with respect to a = `inverse_T`, 1/s.
+pub fn fill_with_tangents(
+    signals: &TrialSignals,
+    inverse_T: f64,
+    columns: &mut MotionColumns,
+    tangents: &mut MotionColumns,
+) {
+    let (rows, anchor) = (signals.time.len(), signals.anchor_row(is_backward(inverse_T)));
+    let has_rates = !signals.yaw_rate_rows.is_empty();
     for (columns, rate) in [(&mut *columns, 1.0), (&mut *tangents, 0.0)] {
         columns.reset(rows, has_rates.then_some((anchor, rate)));
     }
-    run(MotionsWithTangents { track, inverse_T, columns, tangents });
+    run_kernel(MotionsWithTangents { signals, inverse_T, columns, tangents });
     for columns in [columns, tangents] {
-        columns.keep(&track.heading_rows, &track.yaw_rate_rows);
+        columns.keep(&signals.heading_rows, &signals.yaw_rate_rows);
     }
 }
 
 /// Heading and yaw rate of the motions φ₁, G, H and their derivatives with respect to a, at every row.
 struct MotionsWithTangents<'a> {
-    track: &'a Track,
+    signals: &'a TrialSignals,
     inverse_T: f64,
     columns: &'a mut MotionColumns,
     tangents: &'a mut MotionColumns,
@@ -32,20 +37,21 @@ impl Kernel for MotionsWithTangents<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Self { track, inverse_T, columns, tangents } = self;
-        let has_rates = !track.yaw_rate_rows.is_empty();
+        let Self { signals, inverse_T, columns, tangents } = self;
+        let has_rates = !signals.yaw_rate_rows.is_empty();
         let ([f, g, h], [fr, gr, hr]) = columns.slices();
         let ([df, dg, dh], [dfr, dgr, dhr]) = tangents.slices();
         // A fourth motion rests, for alignment.
         let (mut heading, mut by_heading) = ([0.0; 4], [0.0; 4]);
         let (mut rate, mut by_rate) = ([1.0, 0.0, 0.0, 0.0], [0.0; 4]);
         let mut step = TangentTransition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: slope, corner } in track.steps(is_backward(inverse_T))
+        for SignalStep { from_row, to_row, duration, rudder_rate: slope, corner } in
+            signals.steps(is_backward(inverse_T))
         {
-            if durations_differ(step.value.h, duration) {
+            if durations_differ(step.value.time_step, duration) {
                 step = TangentTransition::new(inverse_T, duration);
             }
-            let (f0, d, delta) = (&step.value, &step.by_inverse_T, track.rudder[from_row]);
+            let (f0, d, delta) = (&step.value, &step.by_inverse_T, signals.rudder[from_row]);
             let forced = |[one, two]: [f64; 2]| [0.0, one * delta + two * slope, one, 0.0];
             let (of_heading, of_rate) = (forced([f0.phi2, f0.phi3]), forced([f0.phi1, f0.phi2]));
             let (of_by_heading, of_by_rate) = (forced([d.phi2, d.phi3]), forced([d.phi1, d.phi2]));

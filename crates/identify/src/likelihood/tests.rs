@@ -1,9 +1,9 @@
 use approx::assert_relative_eq;
-use estimation::kalman::Reading;
+use estimation::kalman::SensorReading;
 use nalgebra::{DMatrix, DVector};
 use ship::FirstOrder;
 use ship::angle::from_deg;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use trial::Trial;
 use trial::noise_model::MomentKind;
 
@@ -63,12 +63,12 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
     let (a, b) = (ship.inverse_T, ship.K_over_T);
     let rows = time.len();
     // Response of all rows to an input of rows and an initial state.
-    let respond = |input: &dyn Fn(usize) -> f64, initial: State| -> Vec<State> {
+    let respond = |input: &dyn Fn(usize) -> f64, initial: YawState| -> Vec<YawState> {
         let mut states = vec![initial];
         for row in 1..rows {
             let h = time[row] - time[row - 1];
             let (u0, slope) = (input(row - 1), (input(row) - input(row - 1)) / h);
-            states.push(Transition::new(a, h).advance(states[row - 1], u0, slope));
+            states.push(FirstOrderTransition::new(a, h).advance(states[row - 1], u0, slope));
         }
         states
     };
@@ -79,22 +79,22 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
             [heading, rate.map(|_| (row, false))].into_iter().flatten()
         })
         .collect();
-    let column = |states: &[State]| {
+    let column = |states: &[YawState]| {
         DVector::from_iterator(
             readings.len(),
             readings.iter().map(|&(row, heading)| if heading { states[row].heading } else { states[row].yaw_rate }),
         )
     };
     let mut covariance = DMatrix::zeros(readings.len(), readings.len());
-    let mut source = |states: &[State], sd: f64| {
+    let mut source = |states: &[YawState], sd: f64| {
         let column = column(states) * sd;
         covariance += &column * column.transpose();
     };
-    source(&respond(&|_| 0.0, State { heading: 1.0, yaw_rate: 0.0 }), initial_sd[0]);
-    source(&respond(&|_| 0.0, State { heading: 0.0, yaw_rate: 1.0 }), initial_sd[1]);
+    source(&respond(&|_| 0.0, YawState { heading: 1.0, yaw_rate: 0.0 }), initial_sd[0]);
+    source(&respond(&|_| 0.0, YawState { heading: 0.0, yaw_rate: 1.0 }), initial_sd[1]);
     if noise.rudder_sd > 0.0 {
         for row in 0..rows {
-            source(&respond(&|other| b * f64::from(u8::from(other == row)), State::default()), noise.rudder_sd);
+            source(&respond(&|other| b * f64::from(u8::from(other == row)), YawState::default()), noise.rudder_sd);
         }
     }
     // An impulse of the moment within every fine step, at its middle.
@@ -104,12 +104,14 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
             let at = time[row - 1] + (part as f64 + 0.5) * step;
             let motion = |t: f64| {
                 let s = t - at;
-                let zero = State::default();
+                let zero = YawState::default();
                 match noise.moment {
                     MomentKind::None => zero,
                     _ if s < 0.0 => zero,
-                    MomentKind::White => Transition::new(a, s).advance(State { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0),
-                    MomentKind::Walk => Transition::new(a, s).advance(zero, 1.0, 0.0),
+                    MomentKind::White => {
+                        FirstOrderTransition::new(a, s).advance(YawState { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0)
+                    }
+                    MomentKind::Walk => FirstOrderTransition::new(a, s).advance(zero, 1.0, 0.0),
                     MomentKind::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation_time, s),
                 }
             };
@@ -121,7 +123,8 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
         }
     }
     if noise.moment == MomentKind::OrnsteinUhlenbeck {
-        let states: Vec<State> = time.iter().map(|t| decaying(a, noise.moment_correlation_time, t - time[0])).collect();
+        let states: Vec<YawState> =
+            time.iter().map(|t| decaying(a, noise.moment_correlation_time, t - time[0])).collect();
         source(&states, noise.moment_level);
     }
     for (i, &(row, heading)) in readings.iter().enumerate() {
@@ -138,7 +141,7 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
             }
         }
     }
-    let replay = column(&respond(&|row| b * (rudder[row] + ship.rudder_bias), State::default()));
+    let replay = column(&respond(&|row| b * (rudder[row] + ship.rudder_bias), YawState::default()));
     let measured = readings
         .iter()
         .map(|&(row, heading)| if heading { trial.heading()[row] } else { trial.yaw_rate().expect("a gyro")[row] });
@@ -150,12 +153,16 @@ fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64;
 }
 
 /// State s seconds after a unit moment begins to decay.
-fn decaying(a: f64, correlation: f64, s: f64) -> State {
+fn decaying(a: f64, correlation: f64, s: f64) -> YawState {
     let pieces = 400;
     let h = s / f64::from(pieces);
     let moment = |k: i32| (-f64::from(k) * h / correlation).exp();
-    (0..pieces).fold(State::default(), |state, k| {
-        Transition::new(a, h).advance(state, moment(k), if h > 0.0 { (moment(k + 1) - moment(k)) / h } else { 0.0 })
+    (0..pieces).fold(YawState::default(), |state, k| {
+        FirstOrderTransition::new(a, h).advance(
+            state,
+            moment(k),
+            if h > 0.0 { (moment(k + 1) - moment(k)) / h } else { 0.0 },
+        )
     })
 }
 
@@ -195,22 +202,22 @@ fn even_rows_settle() {
     let heading = time.iter().map(|t| 0.2 * (0.1 * t).sin()).collect();
     let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
     let trial = record("even", time, heading, rudder);
-    let track = Track::new(&trial);
-    let schedule = Schedule::new(&track, false);
+    let signals = TrialSignals::new(&trial);
+    let schedule = Schedule::new(&signals, false);
     let log = [-3.0, 0.0, 0.0, 0.0, 0.0];
-    let place = NoiseVector { moment: MomentKind::Walk, log, ..NoiseVector::default() };
+    let place = NoiseVector { moment: MomentKind::Walk, log_entries: log, ..NoiseVector::default() };
     let parameters = place.parameters(0.06);
     let filter = whitener(&schedule, &parameters, [0.0; 2]);
     assert_eq!(schedule.intervals.len(), 1);
-    let mut settled = track.heading.clone();
+    let mut settled = signals.heading.clone();
     filter.apply(&mut [&mut settled]);
     // Steps that count as different kinds are computed one by one.
     let mut apart = schedule.clone();
     for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
         apart.intervals.push(schedule.intervals[0].clone());
-        *reading = Reading::new(Some(k), reading.sensor());
+        *reading = SensorReading::new(Some(k), reading.sensor());
     }
-    let mut stepwise = track.heading.clone();
+    let mut stepwise = signals.heading.clone();
     whitener(&apart, &parameters, [0.0; 2]).apply(&mut [&mut stepwise]);
     for (settled, stepwise) in settled.iter().zip(&stepwise) {
         assert_relative_eq!(settled, stepwise, max_relative = 1e-8, epsilon = 1e-12);

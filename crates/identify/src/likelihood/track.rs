@@ -8,7 +8,7 @@
 //! steering qualities of ships.
 
 use ship::FirstOrder;
-use ship::first_order::{State, TangentTransition, Transition};
+use ship::first_order::{FirstOrderTransition, TangentTransition, YawState};
 use trial::Trial;
 
 pub use super::columns::MotionColumns;
@@ -19,7 +19,7 @@ const STEP_TOLERANCE: f64 = 1e-9;
 
 /// Rudder, heading and yaw rate of one trial, from the first to the last row with a heading.
 #[derive(Debug, Clone)]
-pub struct Track {
+pub struct TrialSignals {
     /// Time of every row, s.
     pub time: Vec<f64>,
     /// Rudder of every row, rad.
@@ -59,7 +59,7 @@ struct CornerAfterRow {
 
 /// Step from one row to the next, in either direction of time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackStep {
+pub struct SignalStep {
     /// Row before the step.
     pub from_row: usize,
     /// Row after the step.
@@ -83,29 +83,34 @@ pub struct RudderCorner {
 
 impl RudderCorner {
     /// Contribution of the corner to heading and yaw rate at the end of the step, divided by b = K/T: [φ₃ Δ, φ₂ Δ] in
-    /// rad s² and rad s, with the change Δ of the rudder rate and φₙ of [`Transition`]. `inverse_T` is 1/T, 1/s.
+    /// rad s² and rad s, with the change Δ of the rudder rate and φₙ of [`FirstOrderTransition`]. `inverse_T` is 1/T,
+    /// 1/s.
     #[inline]
     pub fn response(&self, inverse_T: f64) -> [f64; 2] {
-        let step = Transition::new(inverse_T, self.remaining);
+        let step = FirstOrderTransition::new(inverse_T, self.remaining);
         [step.phi3 * self.change, step.phi2 * self.change]
     }
 }
 
 /// Coefficients of the columns of the response: the initial state, the rudder and the constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coefficients {
+pub struct MotionCoefficients {
     /// Heading (rad) and yaw rate (rad/s) at the anchor.
-    pub anchor: State,
+    pub anchor: YawState,
     /// b = K/T, 1/s².
     pub K_over_T: f64,
     /// b δ_r, rad/s².
     pub offset: f64,
 }
 
-impl Coefficients {
+impl MotionCoefficients {
     /// Coefficients with the steering of a response and an anchor at rest.
     pub fn from_response(response: &FirstOrder) -> Self {
-        Self { anchor: State::default(), K_over_T: response.K_over_T, offset: response.K_over_T * response.rudder_bias }
+        Self {
+            anchor: YawState::default(),
+            K_over_T: response.K_over_T,
+            offset: response.K_over_T * response.rudder_bias,
+        }
     }
 }
 
@@ -114,8 +119,8 @@ pub fn is_backward(inverse_T: f64) -> bool {
     inverse_T < 0.0
 }
 
-impl Track {
-    /// Track of a trial from its first to its last row with a heading; excitation is not checked.
+impl TrialSignals {
+    /// Signals of a trial from its first to its last row with a heading; excitation is not checked.
     pub fn new(trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
@@ -124,14 +129,14 @@ impl Track {
         let heading = heading_rows.iter().map(|&row| heading[row]).collect();
         let time = trial.time();
         let [times, rudder] = [time, trial.rudder()].map(|column| column[first..=last].to_vec());
-        let mut track = Self::from_rows(times, rudder, heading_rows, heading);
-        for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row)) {
-            let row = corner.row - first;
-            track.intervals[row].rudder_rate = corner.rate_before;
-            let (after, rudder_rate) = (corner.time - time[corner.row], corner.rate_after);
-            track.corners.push(CornerAfterRow { row, after, rudder_rate });
+        let mut signals = Self::from_rows(times, rudder, heading_rows, heading);
+        for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row_before)) {
+            let row = corner.row_before - first;
+            signals.intervals[row].rudder_rate = corner.rate_before;
+            let (after, rudder_rate) = (corner.time - time[corner.row_before], corner.rate_after);
+            signals.corners.push(CornerAfterRow { row, after, rudder_rate });
         }
-        track
+        signals
     }
 
     fn from_rows(time: Vec<f64>, rudder: Vec<f64>, heading_rows: Vec<usize>, heading: Vec<f64>) -> Self {
@@ -144,7 +149,7 @@ impl Track {
         Self { time, rudder, intervals, corners, heading_rows, heading, yaw_rate_rows, yaw_rates }
     }
 
-    /// Track with the yaw rates of the trial; without `rates` they are left out.
+    /// Signals with the yaw rates of the trial; without `rates` they are left out.
     pub fn with_rates(mut self, rates: Option<&[f64]>, trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let rates = rates.map_or(&[][..], |rates| &rates[first..][..self.time.len()]);
@@ -153,7 +158,7 @@ impl Track {
         self
     }
 
-    /// Track without the headings of the given rows.
+    /// Signals without the headings of the given rows.
     pub fn without_headings(&self, headings: &[usize]) -> Self {
         let mut less = self.clone();
         less.heading_rows.retain(|row| !headings.contains(row));
@@ -167,8 +172,8 @@ impl Track {
         less
     }
 
-    /// Track thinned to about `rows` observed rows, evenly spread, the first included: enough to locate a minimum. The
-    /// rudder between them is linear, so its corners are cut.
+    /// Signals thinned to about `rows` observed rows, evenly spread, the first included: enough to locate a minimum.
+    /// The rudder between them is linear, so its corners are cut.
     pub fn thinned(&self, rows: usize) -> Self {
         let every = (self.len() / rows).max(1);
         let kept = || self.heading_rows.iter().step_by(every);
@@ -187,14 +192,14 @@ impl Track {
         self.heading.is_empty()
     }
 
-    /// Duration of the track, s.
+    /// Duration of the record, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
     /// Steps between successive rows, away from the anchor, which is the last row if `backward`.
     #[inline(always)]
-    pub fn steps(&self, backward: bool) -> impl Iterator<Item = TrackStep> {
+    pub fn steps(&self, backward: bool) -> impl Iterator<Item = SignalStep> {
         let (rows, count) = (self.intervals.len(), self.corners.len());
         let corner_at = move |passed: usize| {
             (passed < count).then(|| self.corners[if backward { count - 1 - passed } else { passed }])
@@ -212,11 +217,11 @@ impl Track {
                 let corner =
                     corner_after_row.map(|c| RudderCorner { remaining: -c.after, change: rudder_rate - c.rudder_rate });
                 let rudder_rate = corner_after_row.map_or(rudder_rate, |corner| corner.rudder_rate);
-                TrackStep { from_row: row + 1, to_row: row, duration: -duration, rudder_rate, corner }
+                SignalStep { from_row: row + 1, to_row: row, duration: -duration, rudder_rate, corner }
             } else {
                 let corner = corner_after_row
                     .map(|c| RudderCorner { remaining: duration - c.after, change: c.rudder_rate - rudder_rate });
-                TrackStep { from_row: row, to_row: row + 1, duration, rudder_rate, corner }
+                SignalStep { from_row: row, to_row: row + 1, duration, rudder_rate, corner }
             }
         })
     }
@@ -267,10 +272,10 @@ impl Track {
     #[inline(always)]
     fn motions(&self, inverse_T: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
-        let mut step = Transition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
-            if durations_differ(step.h, duration) {
-                step = Transition::new(inverse_T, duration);
+        let mut step = FirstOrderTransition::new(inverse_T, 0.0);
+        for SignalStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
+            if durations_differ(step.time_step, duration) {
+                step = FirstOrderTransition::new(inverse_T, duration);
             }
             let delta = self.rudder[from_row];
             let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
@@ -289,7 +294,7 @@ impl Track {
     }
 
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
-    pub fn sensitivity(&self, inverse_T: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
+    pub fn sensitivity(&self, inverse_T: f64, coefficients: &MotionCoefficients, out: &mut Vec<f64>) {
         out.resize(self.time.len(), 0.0);
         out[self.anchor_row(is_backward(inverse_T))] = 0.0;
         let column = &mut out[..self.time.len()];
@@ -299,14 +304,14 @@ impl Track {
 
     /// Visits ∂ψ/∂a at every row but the anchor.
     #[inline(always)]
-    fn tangents(&self, inverse_T: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64)) {
+    fn tangents(&self, inverse_T: f64, coefficients: &MotionCoefficients, mut visit: impl FnMut(usize, f64)) {
         let backward = is_backward(inverse_T);
         let anchor = coefficients.anchor;
         // Derivative of the motion, and the motion.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
-            if durations_differ(step.value.h, duration) {
+        for SignalStep { from_row, to_row, duration, rudder_rate: rate, corner } in self.steps(backward) {
+            if durations_differ(step.value.time_step, duration) {
                 step = TangentTransition::new(inverse_T, duration);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
@@ -334,14 +339,14 @@ impl Track {
     }
 
     /// Heading and yaw rate of every row (observed or not) for given coefficients.
-    pub fn simulate(&self, inverse_T: f64, coefficients: &Coefficients) -> Vec<State> {
-        let mut states = vec![State::default(); self.time.len()];
+    pub fn simulate(&self, inverse_T: f64, coefficients: &MotionCoefficients) -> Vec<YawState> {
+        let mut states = vec![YawState::default(); self.time.len()];
         self.simulate_from(is_backward(inverse_T), inverse_T, coefficients, |row, state| states[row] = state);
         states
     }
 
     /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
-    pub fn last_state_from(&self, inverse_T: f64, coefficients: &Coefficients) -> State {
+    pub fn last_state_from(&self, inverse_T: f64, coefficients: &MotionCoefficients) -> YawState {
         let mut last = coefficients.anchor;
         self.simulate_from(false, inverse_T, coefficients, |_, state| last = state);
         last
@@ -351,15 +356,15 @@ impl Track {
         &self,
         backward: bool,
         inverse_T: f64,
-        coefficients: &Coefficients,
-        mut visit: impl FnMut(usize, State),
+        coefficients: &MotionCoefficients,
+        mut visit: impl FnMut(usize, YawState),
     ) {
         let mut state = coefficients.anchor;
         visit(self.anchor_row(backward), state);
-        let mut step = Transition::new(inverse_T, 0.0);
-        for TrackStep { from_row, to_row, duration, rudder_rate, corner } in self.steps(backward) {
-            if durations_differ(step.h, duration) {
-                step = Transition::new(inverse_T, duration);
+        let mut step = FirstOrderTransition::new(inverse_T, 0.0);
+        for SignalStep { from_row, to_row, duration, rudder_rate, corner } in self.steps(backward) {
+            if durations_differ(step.time_step, duration) {
+                step = FirstOrderTransition::new(inverse_T, duration);
             }
             let u0 = coefficients.K_over_T * self.rudder[from_row] + coefficients.offset;
             state = step.advance(state, u0, coefficients.K_over_T * rudder_rate);

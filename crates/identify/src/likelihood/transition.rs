@@ -1,8 +1,8 @@
 //! Exact transition and noise covariance of the state over a time step, by a power series. Source: Van Loan (1978),
 //! Computing integrals involving the matrix exponential, IEEE Transactions on Automatic Control 23, 395–404.
 
-use estimation::kalman::{Step, congruence, identity, product, sum};
-use ship::first_order::Transition;
+use estimation::kalman::{LinearStep, congruence, identity, product, sum};
+use ship::first_order::FirstOrderTransition;
 use trial::noise_model::MomentKind;
 
 use super::parameters::NoiseParameters;
@@ -30,13 +30,16 @@ type Small = [[f64; 3]; 3];
 
 /// Transition and process noise between two readings: the pieces of the rudder in order, and the decay of the compass
 /// error over the whole time.
-pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, interval: &ReadingInterval) -> Step<N> {
+pub(crate) fn transition_step<const N: usize>(
+    parameters: &NoiseParameters,
+    interval: &ReadingInterval,
+) -> LinearStep<N> {
     let mut whole = match parameters.rudder_error_sd {
         None => undisturbed(parameters, interval.duration()),
         Some(size) => {
             let piece = |&duration: &f64| with_rudder(undisturbed(parameters, duration), parameters, size, duration);
             let mut pieces = interval.pieces.iter().map(piece);
-            let first = pieces.next().unwrap_or(Step { transition: identity(), process_noise: [[0.0; N]; N] });
+            let first = pieces.next().unwrap_or(LinearStep { transition: identity(), process_noise: [[0.0; N]; N] });
             pieces.fold(first, |before, piece| before.followed_by(&piece))
         }
     };
@@ -49,7 +52,7 @@ pub(crate) fn transition_step<const N: usize>(parameters: &NoiseParameters, inte
 }
 
 /// Step of ship and moment without rudder error: a short step F, Q, doubled by F F and Q + F Q Fᵀ up to `duration`, s.
-fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> Step<N> {
+fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> LinearStep<N> {
     let inverse_times = parameters.inverse_T.abs() + parameters.moment_inverse_time;
     let doublings = (inverse_times * duration / MAX_SCALED_STEP).log2().ceil().max(0.0);
     let (mut f, mut q) = short(parameters, duration / doublings.exp2());
@@ -57,7 +60,7 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> S
         q = sum(&q, &congruence(&f, &q));
         f = product(&f, &f);
     }
-    let mut step = Step { transition: identity(), process_noise: [[0.0; N]; N] };
+    let mut step = LinearStep { transition: identity(), process_noise: [[0.0; N]; N] };
     let states = if parameters.has_moment_state() { 3 } else { 2 };
     for i in 0..states {
         for j in 0..states {
@@ -68,9 +71,14 @@ fn undisturbed<const N: usize>(parameters: &NoiseParameters, duration: f64) -> S
 }
 
 /// Adds the error of the recorded rudder at both ends of a piece, between which it is linear.
-fn with_rudder<const N: usize>(mut step: Step<N>, parameters: &NoiseParameters, size: f64, duration: f64) -> Step<N> {
+fn with_rudder<const N: usize>(
+    mut step: LinearStep<N>,
+    parameters: &NoiseParameters,
+    size: f64,
+    duration: f64,
+) -> LinearStep<N> {
     let Some(place) = parameters.rudder_state() else { return step };
-    let Transition { phi1, phi2, phi3, .. } = Transition::new(parameters.inverse_T, duration);
+    let FirstOrderTransition { phi1, phi2, phi3, .. } = FirstOrderTransition::new(parameters.inverse_T, duration);
     let after = [phi3 / duration, phi2 / duration];
     let before = [phi2 - after[0], phi1 - after[1]];
     let mut fresh = [0.0; N];

@@ -4,7 +4,7 @@
 use document::{HeadingNoise, RandomMoment, Warning, WarningCode};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use ship::angle::to_deg;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
@@ -16,7 +16,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::RUDDER_INDEX;
-use crate::likelihood::track::{Coefficients, Track, is_backward};
+use crate::likelihood::track::{MotionCoefficients, TrialSignals, is_backward};
 use crate::output_error::{MAX_CONDITION, MIN_GAIN_DEVIATIONS, UNSTABLE_WARNING, response_covariance};
 use crate::profile::invert;
 use crate::robust;
@@ -52,7 +52,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
     let Point { inverse_T, K_over_T, offset, ref vectors, ref parts, .. } = maximum.point;
     let motion = |number: usize, vector: &NoiseVector| {
         let part = &parts[number];
-        let coefficients = Coefficients { anchor: part.anchor, K_over_T, offset };
+        let coefficients = MotionCoefficients { anchor: part.anchor, K_over_T, offset };
         let products = records[number].information(inverse_T, vector, &coefficients);
         products.map(|products| products / part.variance)
     };
@@ -75,7 +75,7 @@ fn degrees_of_freedom(records: &[Record], maximum: &Maximum) -> f64 {
             .map(|&entry| {
                 let moved = |by: f64| {
                     let mut shifted = *vector;
-                    shifted.log[entry] += by;
+                    shifted.log_entries[entry] += by;
                     motion(number, &shifted).unwrap_or_else(Matrix3::zeros)
                 };
                 let change = (moved(DIFFERENCE) - moved(-DIFFERENCE)) / (2.0 * DIFFERENCE);
@@ -129,7 +129,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
     let Point { inverse_T, K_over_T, offset, deviance, ref vectors, ref parts, .. } = maximum.point;
     let response = FirstOrder { inverse_T, K_over_T, rudder_bias: offset / K_over_T };
     let readings: usize = parts.iter().map(|part| part.readings).sum();
-    let jumps: usize = records.iter().map(|record| record.jumps.len()).sum();
+    let jumps: usize = records.iter().map(|record| record.jump_rows.len()).sum();
     let freedom = readings as f64 - (SHARED_PARAMETERS + 2 * trials.len() + jumps) as f64;
     let singular = |condition| IdentifyError::Singular { condition, limit: MAX_CONDITION };
     let (inverse, condition) = covariance(&maximum.derivatives.information).map_err(singular)?;
@@ -182,18 +182,18 @@ pub(super) fn estimate(trials: &[Trial], chosen: ChosenLaw) -> Result<Estimate, 
 fn outlier_warnings(trials: &[Trial], chosen: &ChosenLaw) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for ((trial, record), suspects) in trials.iter().zip(&chosen.records).zip(&chosen.outliers) {
-        let (name, time) = (trial.title(), &record.track.time);
+        let (name, time) = (trial.title(), &record.signals.time);
         let times = |rows: &[usize]| {
             let shown: Vec<String> = rows.iter().take(LISTED).map(|&row| ShortNumber(time[row]).to_string()).collect();
             format!("{}{}", shown.join(", "), if rows.len() > LISTED { ", …" } else { "" })
         };
-        if !suspects.spikes.is_empty() {
-            let (count, times) = (suspects.spikes.len(), times(&suspects.spikes));
+        if !suspects.spike_rows.is_empty() {
+            let (count, times) = (suspects.spike_rows.len(), times(&suspects.spike_rows));
             let text = format!("{name}: headings far from their neighbours are left out ({count}), at t = {times} s");
             warnings.push(WarningCode::RejectedReadings.warning(text));
         }
-        if !suspects.jumps.is_empty() {
-            let times = times(&suspects.jumps);
+        if !suspects.jump_rows.is_empty() {
+            let times = times(&suspects.jump_rows);
             let text = format!("{name}: the heading jumps and stays off at t = {times} s; jump sizes are estimated");
             warnings.push(WarningCode::HeadingJump.warning(text));
         }
@@ -210,8 +210,8 @@ fn noise_diagnostics(noise: &NoiseModel, K_over_T: f64, chosen: &ChosenLaw) -> V
     let count = |suspects: fn(&Suspects) -> usize| chosen.outliers.iter().map(suspects).sum::<usize>() as f64;
     let mut diagnostics = vec![
         ("heading_sd_deg", to_deg(noise.heading_sd)),
-        ("left_out", count(|suspects| suspects.spikes.len())),
-        ("jumps", count(|suspects| suspects.jumps.len())),
+        ("left_out", count(|suspects| suspects.spike_rows.len())),
+        ("jumps", count(|suspects| suspects.jump_rows.len())),
     ];
     diagnostics.extend(noise.heading_correlation_time.map(|time| ("heading_correlation_s", time)));
     diagnostics.extend(noise.yaw_rate_sd.map(|sd| ("yaw_rate_sd_deg_s", to_deg(sd))));
@@ -287,13 +287,13 @@ fn noise_warning(trial: &Trial, noise: &NoiseModel, K_over_T: f64) -> Option<War
 /// The information is Σ (∂ν/∂θ)(∂ν/∂θ)ᵀ/S over the innovations; the small information of the noise spectrum on 1/T is
 /// neglected. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` if the
 /// record does not determine the parameters. Source: Cramér (1946), Rao (1945).
-pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &NoiseModel) -> Option<Covariance> {
-    let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
-    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::from_response(truth) };
+pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: YawState, noise: &NoiseModel) -> Option<Covariance> {
+    let signals = TrialSignals::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
+    let mut coefficients = MotionCoefficients { anchor: initial, ..MotionCoefficients::from_response(truth) };
     if is_backward(truth.inverse_T) {
-        coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
+        coefficients.anchor = signals.last_state_from(truth.inverse_T, &coefficients);
     }
-    let record = Record::new(track, noise.rudder_sd > 0.0, None);
+    let record = Record::new(signals, noise.rudder_sd > 0.0, None);
     let information = record.information(truth.inverse_T, &NoiseVector::from_model(noise, truth), &coefficients)?;
     let (inverse, _) = invert(&information, MAX_CONDITION).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);

@@ -12,11 +12,11 @@ use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::likelihood::NoiseVector;
 use crate::likelihood::parameters::{COMPASS_INDEX, RUDDER_INDEX};
-use crate::likelihood::track::{Coefficients, MotionColumns, Track};
+use crate::likelihood::track::{MotionCoefficients, MotionColumns, TrialSignals};
 use crate::output_error::{self, MAX_CONDITION, MIN_ROWS};
 use crate::replay::best_initial_state;
 use crate::robust;
-use crate::samples::checked_track;
+use crate::samples::checked_signals;
 use trial::noise_model::MomentKind;
 
 /// Maximum number of rounds of outlier search and refit.
@@ -51,7 +51,7 @@ pub(super) struct ChosenLaw {
     pub records: Vec<Record>,
     /// Fits under the plausible noise laws with their weights, the most plausible first.
     pub maxima: Vec<(f64, Maximum)>,
-    /// Spikes and jumps of every record, by row of the track.
+    /// Spikes and jumps of every record, by row of its signals.
     pub outliers: Vec<Suspects>,
     /// `true` if there are too many spikes to leave out.
     pub has_too_many_outliers: bool,
@@ -67,42 +67,46 @@ impl PreparedRecords {
     /// Finds the outliers of the records and fits `output-error` to the other readings. Fails as `output-error` does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
         let whole =
-            trials.iter().map(|trial| checked_track(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+            trials.iter().map(|trial| checked_signals(trial, MIN_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
         // Readings far from any possible course would spoil the first fit: a very quick ship could follow a sentinel in
         // the first row by its initial yaw rate.
-        let gross = |track: &Track| match settings.removes_outliers {
-            true => Suspects { jumps: Vec::new(), ..outliers::find_suspects(track, &track.heading, &[]) },
+        let gross = |signals: &TrialSignals| match settings.removes_outliers {
+            true => Suspects { jump_rows: Vec::new(), ..outliers::find_suspects(signals, &signals.heading, &[]) },
             false => Suspects::default(),
         };
         let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
         let mut has_too_many_outliers = false;
-        let mut tracks: Vec<Track> =
-            whole.iter().zip(&suspects).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
-        let mut first = method.fit(tracks.clone(), finest);
+        let mut trial_signals: Vec<TrialSignals> =
+            whole.iter().zip(&suspects).map(|(signals, rows)| signals.without_headings(&rows.spike_rows)).collect();
+        let mut first = method.fit(trial_signals.clone(), finest);
         let mut evaluations = 0;
         for _ in 0..if settings.removes_outliers { MAX_OUTLIER_ROUNDS } else { 0 } {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
             let fitted = first.as_ref().ok();
-            let again = |(track, excluded): (&Track, &Suspects)| {
-                outliers::find_suspects(track, &residual(track, fitted, &excluded.spikes), &excluded.spikes)
+            let again = |(signals, excluded): (&TrialSignals, &Suspects)| {
+                outliers::find_suspects(signals, &residual(signals, fitted, &excluded.spike_rows), &excluded.spike_rows)
             };
             let next: Vec<Suspects> = whole.iter().zip(&suspects).map(again).collect();
-            let share = |(track, rows): (&Track, &Suspects)| rows.spikes.len() as f64 / track.len() as f64;
+            let share =
+                |(signals, rows): (&TrialSignals, &Suspects)| rows.spike_rows.len() as f64 / signals.len() as f64;
             has_too_many_outliers = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > MAX_OUTLIER_SHARE;
-            if has_too_many_outliers || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
+            if has_too_many_outliers
+                || next.iter().zip(&suspects).all(|(next, last)| next.spike_rows == last.spike_rows)
+            {
                 suspects = next;
                 break;
             }
-            tracks = whole.iter().zip(&next).map(|(track, rows)| track.without_headings(&rows.spikes)).collect();
+            trial_signals =
+                whole.iter().zip(&next).map(|(signals, rows)| signals.without_headings(&rows.spike_rows)).collect();
             suspects = next;
-            first = method.fit(tracks.clone(), finest);
+            first = method.fit(trial_signals.clone(), finest);
         }
         if has_too_many_outliers {
-            suspects.iter_mut().for_each(|rows| rows.spikes.clear());
-            tracks = whole.clone();
-            first = method.fit(tracks.clone(), finest);
+            suspects.iter_mut().for_each(|rows| rows.spike_rows.clear());
+            trial_signals = whole.clone();
+            first = method.fit(trial_signals.clone(), finest);
         }
         let first = first?;
         let gyro = settings.uses_yaw_rate
@@ -110,21 +114,21 @@ impl PreparedRecords {
         let declared_sd = |trial: &Trial| trial.noise().rudder_sd.filter(|&sd| sd > 0.0);
         let declared = settings.rudder == RudderChoice::Declared && trials.iter().all(|run| declared_sd(run).is_some());
         let by_row = declared || settings.rudder == RudderChoice::Estimated;
-        let records = tracks
+        let records = trial_signals
             .into_iter()
             .zip(trials)
-            .map(|(track, trial)| {
-                let track = track.with_rates(trial.yaw_rate().filter(|_| gyro), trial);
-                Record::new(track, by_row, declared_sd(trial).filter(|_| declared))
+            .map(|(signals, trial)| {
+                let signals = signals.with_rates(trial.yaw_rate().filter(|_| gyro), trial);
+                Record::new(signals, by_row, declared_sd(trial).filter(|_| declared))
             })
             .collect();
         Ok(Self { records, start: first.response, outliers: suspects, has_too_many_outliers, evaluations })
     }
 
     /// Times of the spikes of every record, s.
-    pub fn spikes(&self) -> Vec<Vec<f64>> {
+    pub fn spike_times(&self) -> Vec<Vec<f64>> {
         let times = |(record, suspects): (&Record, &Suspects)| {
-            suspects.spikes.iter().map(|&row| record.track.time[row]).collect()
+            suspects.spike_rows.iter().map(|&row| record.signals.time[row]).collect()
         };
         self.records.iter().zip(&self.outliers).map(times).collect()
     }
@@ -149,15 +153,15 @@ impl PreparedRecords {
         let mut spent = evaluations;
         let (mut all, mut bic_by_moment) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
         // A jump is kept if it improves the likelihood enough under the selected noise.
-        let suspected: usize = outliers.iter().map(|rows| rows.jumps.len()).sum();
+        let suspected: usize = outliers.iter().map(|rows| rows.jump_rows.len()).sum();
         let mut kept = outliers;
         if let Some((_, maximum)) = all.first().filter(|_| suspected > 0) {
             keep_jumps(&mut records, &mut kept, &maximum.point);
-            if records.iter().any(|record| !record.jumps.is_empty()) {
+            if records.iter().any(|record| !record.jump_rows.is_empty()) {
                 (all, bic_by_moment) = fit_laws(&records, &ranges, settings, a, &none, &mut spent);
             }
         }
-        kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jumps.clone_from(&record.jumps));
+        kept.iter_mut().zip(&records).for_each(|(rows, record)| rows.jump_rows.clone_from(&record.jump_rows));
         let Some(&(lowest, _)) = all.first() else {
             return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: MAX_CONDITION });
         };
@@ -178,19 +182,19 @@ impl PreparedRecords {
     }
 }
 
-/// Residual of `output-error` at every heading of the whole track, rad, with an initial state fitted without the
+/// Residual of `output-error` at every heading of the whole record, rad, with an initial state fitted without the
 /// `excluded` spikes; the heading itself without an estimate.
-fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec<f64> {
-    let Some(estimate) = fitted else { return track.heading.clone() };
+fn residual(signals: &TrialSignals, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec<f64> {
+    let Some(estimate) = fitted else { return signals.heading.clone() };
     let ship = estimate.response;
     let mut columns = MotionColumns::default();
-    track.fill_columns(ship.inverse_T, &mut columns);
-    let Coefficients { K_over_T, offset, .. } = Coefficients::from_response(&ship);
+    signals.fill_columns(ship.inverse_T, &mut columns);
+    let MotionCoefficients { K_over_T, offset, .. } = MotionCoefficients::from_response(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
     let free: Vec<f64> =
-        track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - K_over_T * g - offset * h).collect();
+        signals.heading.iter().zip(forced).map(|(psi, (g, h))| psi - K_over_T * g - offset * h).collect();
     let without_spikes = |values: &[f64]| -> Vec<f64> {
-        let rows = track.heading_rows.iter().zip(values);
+        let rows = signals.heading_rows.iter().zip(values);
         rows.filter(|(row, _)| !excluded.contains(row)).map(|(_, &value)| value).collect()
     };
     let start = best_initial_state(&without_spikes(&free), &without_spikes(&columns.homogeneous));
@@ -199,10 +203,10 @@ fn residual(track: &Track, fitted: Option<&Estimate>, excluded: &[usize]) -> Vec
 }
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
-    let track = &record.track;
+    let signals = &record.signals;
     let plain =
         evaluate(std::slice::from_ref(record), &[(start.inverse_T, vec![NoiseVector::default()])]).pop().flatten();
-    let spacing = track.duration() / (track.len() - 1) as f64;
+    let spacing = signals.duration() / (signals.len() - 1) as f64;
     let residual = plain.map_or(1.0, |point| {
         let part = &point.parts[0];
         // Second differences of white noise have six times its variance; a moment leaves little in them.
@@ -210,7 +214,7 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
         let white = differences.iter().sum::<f64>() / differences.len().max(1) as f64 / 6.0;
         (part.variance / white.max(f64::MIN_POSITIVE)).sqrt().clamp(1.0, 1e6)
     });
-    Ranges { duration: track.duration(), spacing, residual }
+    Ranges { duration: signals.duration(), spacing, residual }
 }
 
 /// BIC: restricted −2 log L plus log n per active entry of the noise, with n readings over all records; a declared
@@ -387,14 +391,14 @@ fn best_inverse_T(search: &mut Search, inverse_T: f64, vectors: &[NoiseVector]) 
 /// Keeps the suspected jumps that raise the likelihood enough under the noise of a point.
 fn keep_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
     for number in 0..records.len() {
-        for jump in outliers[number].jumps.clone() {
+        for jump in outliers[number].jump_rows.clone() {
             let start = [(point.inverse_T, point.vectors.clone())];
             let height = |records: &[Record]| Some(evaluate(records, &start).pop()??.deviance);
             let before = height(records);
-            records[number].jumps.push(jump);
+            records[number].jump_rows.push(jump);
             let gain = before.zip(height(records)).map_or(0.0, |(before, after)| before - after);
             if gain < MIN_JUMP_GAIN + (records[number].len() as f64).ln() {
-                records[number].jumps.pop();
+                records[number].jump_rows.pop();
             }
         }
     }

@@ -10,7 +10,7 @@
 use estimation::column::extremes;
 use estimation::statistics::median;
 
-use crate::likelihood::track::Track;
+use crate::likelihood::track::TrialSignals;
 
 /// Number of neighbours on either side for the comparison of a reading: enough to detect runs of up to three spikes.
 const NEIGHBOURS: usize = 7;
@@ -44,16 +44,16 @@ const NORMAL: f64 = 1.4826;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Suspects {
     /// Rows of spikes, increasing.
-    pub spikes: Vec<usize>,
+    pub spike_rows: Vec<usize>,
     /// First rows after jumps, increasing.
-    pub jumps: Vec<usize>,
+    pub jump_rows: Vec<usize>,
 }
 
-/// Finds spikes and jumps in the heading residual of a fit (rad, a value for every reading of the whole track).
+/// Finds spikes and jumps in the heading residual of a fit (rad, a value for every heading of the whole record).
 ///
 /// Spikes spoil the fit and so enlarge other residuals: in addition to the spikes `excluded` from the fit only the
 /// largest are selected in a round.
-pub(super) fn find_suspects(whole: &Track, residual: &[f64], excluded: &[usize]) -> Suspects {
+pub(super) fn find_suspects(whole: &TrialSignals, residual: &[f64], excluded: &[usize]) -> Suspects {
     let (lowest, highest) = extremes(&whole.heading);
     // The range may include a sentinel.
     let floor = MIN_OUTLIER_SHARE * (highest - lowest).min(std::f64::consts::PI);
@@ -81,7 +81,10 @@ pub(super) fn find_suspects(whole: &Track, residual: &[f64], excluded: &[usize])
         spikes.push(row);
     }
     spikes.sort_unstable();
-    Suspects { jumps: jumps(residual, &kept, floor).into_iter().map(|number| rows[number]).collect(), spikes }
+    Suspects {
+        jump_rows: jumps(residual, &kept, floor).into_iter().map(|number| rows[number]).collect(),
+        spike_rows: spikes,
+    }
 }
 
 /// Comparison of a reading with its neighbours on one side, rad.
@@ -183,29 +186,29 @@ mod tests {
     #[test]
     fn isolated_readings_are_found_and_no_others() {
         let trial = Case { noise_deg: 0.1, ..Case::default() }.trial();
-        let track = Track::new(&trial);
+        let signals = TrialSignals::new(&trial);
         // Noise alone, as in the residual of a good fit.
         let truth = Case::default().truth();
-        let noise: Vec<f64> = track.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
-        assert_eq!(find_suspects(&track, &noise, &[]), Suspects::default());
+        let noise: Vec<f64> = signals.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
+        assert_eq!(find_suspects(&signals, &noise, &[]), Suspects::default());
         let mut spoilt = noise.clone();
         for (row, by) in [(0, 1.0), (60, -0.05), (100, 4.9), (101, 4.9), (102, 4.9), (270, 0.03)] {
             spoilt[row] += by;
         }
-        assert_eq!(find_suspects(&track, &spoilt, &[0, 60, 270]).spikes, [0, 60, 100, 101, 102, 270]);
-        assert_eq!(find_suspects(&track, &spoilt, &[0, 60, 270]).jumps, [0usize; 0]);
+        assert_eq!(find_suspects(&signals, &spoilt, &[0, 60, 270]).spike_rows, [0, 60, 100, 101, 102, 270]);
+        assert_eq!(find_suspects(&signals, &spoilt, &[0, 60, 270]).jump_rows, [0usize; 0]);
         let jumped: Vec<f64> =
             noise.iter().enumerate().map(|(row, x)| x + if row >= 130 { 0.07 } else { 0.0 }).collect();
-        assert_eq!(find_suspects(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
+        assert_eq!(find_suspects(&signals, &jumped, &[]), Suspects { spike_rows: vec![], jump_rows: vec![130] });
     }
 
     /// A smooth misfit without noise has no outliers, whatever its beginning.
     #[test]
     fn a_slope_is_not_a_run_of_spikes() {
-        let track = Track::new(&Case::default().trial());
-        let smooth: Vec<f64> = (0..track.heading.len())
+        let signals = TrialSignals::new(&Case::default().trial());
+        let smooth: Vec<f64> = (0..signals.heading.len())
             .map(|k| 0.05 * (-(k as f64) / 6.0).exp() + 0.01 * (k as f64 / 40.0).sin())
             .collect();
-        assert_eq!(find_suspects(&track, &smooth, &[]).spikes, [0usize; 0]);
+        assert_eq!(find_suspects(&signals, &smooth, &[]).spike_rows, [0usize; 0]);
     }
 }

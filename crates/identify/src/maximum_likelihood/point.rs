@@ -10,17 +10,17 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use estimation::column::{dot, gram};
-use estimation::kalman::Reading;
+use estimation::kalman::SensorReading;
 use estimation::kalman::whitener::{InterleavedRow, Whitener};
 use estimation::rows;
 use nalgebra::{DMatrix, DVector, Matrix3};
-use ship::first_order::State;
+use ship::first_order::YawState;
 
 use super::weight::{Weight, weigh};
 use crate::likelihood::parameters::RUDDER_INDEX;
 use crate::likelihood::schedule::COMPASS_SENSOR;
 use crate::likelihood::tangents::fill_with_tangents;
-use crate::likelihood::track::{Coefficients, MotionColumns, Track};
+use crate::likelihood::track::{MotionCoefficients, MotionColumns, TrialSignals};
 use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
 
 /// Number of unknowns that all records share: 1/T, K/T and (K/T) δ_r.
@@ -29,10 +29,10 @@ pub(super) const SHARED_PARAMETERS: usize = 3;
 /// Record with its readings.
 #[derive(Debug, Clone)]
 pub(super) struct Record {
-    pub track: Track,
+    pub signals: TrialSignals,
     pub schedule: Schedule,
     /// First rows after jumps of the compass by a constant.
-    pub jumps: Vec<usize>,
+    pub jump_rows: Vec<usize>,
     /// Declared standard deviation of the rudder error, rad. It fixes the rudder error of a noise vector, whose entry
     /// then represents the size of the compass error. `None` if it is not declared or not used.
     pub declared_rudder_sd: Option<f64>,
@@ -81,7 +81,7 @@ pub(super) struct RecordAtPoint {
     /// Number of readings.
     pub readings: usize,
     /// Heading (rad) and yaw rate (rad/s) at the anchor.
-    pub anchor: State,
+    pub anchor: YawState,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
     /// Contribution to −2 log L.
@@ -119,12 +119,12 @@ pub(super) struct Point {
 }
 
 impl Record {
-    pub fn new(track: Track, by_row: bool, declared_rudder_sd: Option<f64>) -> Self {
-        let schedule = Schedule::new(&track, by_row);
+    pub fn new(signals: TrialSignals, by_row: bool, declared_rudder_sd: Option<f64>) -> Self {
+        let schedule = Schedule::new(&signals, by_row);
         Self {
-            track,
+            signals,
             schedule,
-            jumps: Vec::new(),
+            jump_rows: Vec::new(),
             declared_rudder_sd,
             last_columns: RefCell::default(),
             white: RefCell::default(),
@@ -138,7 +138,7 @@ impl Record {
 
     /// `true` if the yaw rate is among the readings.
     pub fn has_gyro(&self) -> bool {
-        !self.track.yaw_rates.is_empty()
+        !self.signals.yaw_rates.is_empty()
     }
 
     /// Declared rudder error of a noise vector, rad; `None` without a declared or a fitted rudder error.
@@ -148,13 +148,13 @@ impl Record {
 
     /// Number of unknowns of the record alone: initial state and jumps.
     pub fn nuisance_count(&self) -> usize {
-        INITIAL_STATE + self.jumps.len()
+        INITIAL_STATE + self.jump_rows.len()
     }
 
     /// Regressor of a compass jump: 1 for headings from row `jump` on, 0 before and for yaw rates.
     fn step_at(&self, jump: usize) -> Vec<f64> {
-        let heading: Vec<f64> = self.track.heading_rows.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
-        self.schedule.stacked(&heading, &vec![0.0; self.track.yaw_rates.len()])
+        let heading: Vec<f64> = self.signals.heading_rows.iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
+        self.schedule.stacked(&heading, &vec![0.0; self.signals.yaw_rates.len()])
     }
 
     /// Columns of a ship with this 1/T; the columns of the last 1/T are cached.
@@ -197,7 +197,7 @@ impl Record {
         &self,
         inverse_T: f64,
         vector: &NoiseVector,
-        coefficients: &Coefficients,
+        coefficients: &MotionCoefficients,
     ) -> Option<Matrix3<f64>> {
         let white = self.whitened(&[(inverse_T, vector.parameters(inverse_T))]).pop()??;
         let by_inverse_T = white.by_inverse_T(coefficients);
@@ -228,12 +228,14 @@ fn instrument_rows(
 
 impl RecordColumns {
     fn new(record: &Record, inverse_T: f64) -> Self {
-        let Record { track, schedule, jumps, .. } = record;
+        let Record { signals, schedule, jump_rows: jumps, .. } = record;
         let (mut motion, mut by_inverse_T) = (MotionColumns::default(), MotionColumns::default());
-        fill_with_tangents(track, inverse_T, &mut motion, &mut by_inverse_T);
-        let mut headings = instrument_rows(1.0, motion.headings(), &track.heading, by_inverse_T.headings());
-        let mut rates = instrument_rows(0.0, motion.rates.all(), &track.yaw_rates, by_inverse_T.rates.all());
-        let row = |reading: &Reading| if reading.sensor() == COMPASS_SENSOR { headings.next() } else { rates.next() };
+        fill_with_tangents(signals, inverse_T, &mut motion, &mut by_inverse_T);
+        let mut headings = instrument_rows(1.0, motion.headings(), &signals.heading, by_inverse_T.headings());
+        let mut rates =
+            instrument_rows(0.0, motion.rates.yaw_rates(), &signals.yaw_rates, by_inverse_T.rates.yaw_rates());
+        let row =
+            |reading: &SensorReading| if reading.sensor() == COMPASS_SENSOR { headings.next() } else { rates.next() };
         let mut rows = Vec::with_capacity(record.len());
         rows.extend(schedule.readings.iter().filter_map(row));
         Self { inverse_T, rows, jumps: jumps.iter().map(|&jump| record.step_at(jump)).collect() }
@@ -241,7 +243,7 @@ impl RecordColumns {
 
     /// `true` if these are the columns of a record for this 1/T.
     fn is_of(&self, record: &Record, inverse_T: f64) -> bool {
-        self.inverse_T == inverse_T && self.jumps.len() == record.jumps.len()
+        self.inverse_T == inverse_T && self.jumps.len() == record.jump_rows.len()
     }
 }
 
@@ -281,7 +283,7 @@ impl WhitenedColumns {
     }
 
     /// Whitened sensitivity of the readings to 1/T at given coefficients, projected off the nuisance columns.
-    fn by_inverse_T(&self, Coefficients { anchor, K_over_T, offset }: &Coefficients) -> Vec<f64> {
+    fn by_inverse_T(&self, MotionCoefficients { anchor, K_over_T, offset }: &MotionCoefficients) -> Vec<f64> {
         let [by_yaw_rate, by_rudder, by_constant] = &self.tangents;
         let steered = by_rudder.iter().zip(by_constant).map(|(g, h)| K_over_T * g + offset * h);
         by_yaw_rate.iter().zip(steered).map(|(f, steered)| anchor.yaw_rate * f + steered).collect()
@@ -301,7 +303,7 @@ impl WhitenedColumns {
     }
 
     /// Heading and yaw rate at the anchor for given b and b δ_r, by back substitution; 0 where they are unobservable.
-    fn start(&self, K_over_T: f64, offset: f64) -> Option<State> {
+    fn start(&self, K_over_T: f64, offset: f64) -> Option<YawState> {
         let [rudder, constant, readings] = &self.shares;
         let along = (0..readings.len()).map(|k| readings[k] - K_over_T * rudder[k] - offset * constant[k]);
         let mut along = DVector::from_iterator(readings.len(), along);
@@ -313,7 +315,7 @@ impl WhitenedColumns {
             }
         }
         let initial = triangle.solve_upper_triangular(&along)?;
-        Some(State { heading: initial[0], yaw_rate: initial[1] })
+        Some(YawState { heading: initial[0], yaw_rate: initial[1] })
     }
 }
 
@@ -325,8 +327,8 @@ fn weight(record: &Record, vector: &NoiseVector, white: &WhitenedColumns, all: u
     Weight {
         products: gram([rudder, constant, measured]),
         readings,
-        freedom: readings - fitted,
-        compass_sd_per_gain: record.declared_rudder_error(vector).map(|sd| sd / vector.log[RUDDER_INDEX].exp()),
+        degrees_of_freedom: readings - fitted,
+        compass_sd_per_gain: record.declared_rudder_error(vector).map(|sd| sd / vector.log_entries[RUDDER_INDEX].exp()),
     }
 }
 
@@ -365,7 +367,7 @@ impl RecordAtPoint {
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         let log_determinant = seen.map(|length| (length * length / variance).ln()).sum::<f64>();
-        let by_inverse_T = white.by_inverse_T(&Coefficients { anchor, K_over_T, offset });
+        let by_inverse_T = white.by_inverse_T(&MotionCoefficients { anchor, K_over_T, offset });
         let (motion, innovations) = (white.motion(&by_inverse_T), white.residual(K_over_T, offset));
         let readings = record.len();
         Some(Self { variance, readings, anchor, innovations, deviance, log_determinant, motion, white, by_inverse_T })

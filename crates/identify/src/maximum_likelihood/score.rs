@@ -85,11 +85,11 @@ impl ScoreAndInformation {
         let is_tied = record.declared_rudder_error(vector).is_some();
         // A moment and a rudder error depend on the response of the ship.
         let by_ship = (vector.moment != MomentKind::None || vector.has_rudder_error)
-            .then(|| DIFFERENCE * (a.abs() + record.track.duration().recip()));
+            .then(|| DIFFERENCE * (a.abs() + record.signals.duration().recip()));
         let active: Vec<usize> = vector.active_entries(record.has_gyro()).collect();
         let moved = active.iter().map(|&entry| {
             let mut moved = *vector;
-            moved.log[entry] += DIFFERENCE;
+            moved.log_entries[entry] += DIFFERENCE;
             (moved, a)
         });
         let noises: Vec<(NoiseVector, f64)> = by_ship.map(|by| (*vector, a + by)).into_iter().chain(moved).collect();

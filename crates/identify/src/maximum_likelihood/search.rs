@@ -71,7 +71,7 @@ impl Ranges {
     fn with(&self, vector: &NoiseVector, entry: usize, log: f64) -> NoiseVector {
         let [low, high] = self.range(vector, entry);
         let mut moved = *vector;
-        moved.log[entry] = log.clamp(low, high);
+        moved.log_entries[entry] = log.clamp(low, high);
         moved
     }
 }
@@ -174,7 +174,7 @@ impl Search<'_> {
                     let factor = if vector.moment == MomentKind::White { 0.5 / time } else { 0.5 * time };
                     let gusts = NoiseVector { moment: MomentKind::OrnsteinUhlenbeck, ..*vector };
                     let gusts = ranges.with(&gusts, CORRELATION_INDEX, time.ln());
-                    ranges.with(&gusts, LEVEL_INDEX, vector.log[LEVEL_INDEX] + 0.5 * factor.ln())
+                    ranges.with(&gusts, LEVEL_INDEX, vector.log_entries[LEVEL_INDEX] + 0.5 * factor.ln())
                 })
             }));
         }
@@ -247,7 +247,7 @@ impl Search<'_> {
         for ((record, vector), ranges) in self.records.iter().zip(&point.vectors).zip(self.ranges) {
             for entry in vector.active_entries(record.has_gyro()) {
                 let [low, high] = ranges.range(vector, entry);
-                let log = vector.log[entry];
+                let log = vector.log_entries[entry];
                 let outward = (log <= low && gradient[index] > 0.0) || (log >= high && gradient[index] < 0.0);
                 if !outward {
                     free.push(index);
@@ -265,7 +265,7 @@ impl Search<'_> {
         let mut vectors = point.vectors.clone();
         for ((record, vector), ranges) in self.records.iter().zip(&mut vectors).zip(self.ranges) {
             for entry in vector.active_entries(record.has_gyro()) {
-                *vector = ranges.with(vector, entry, vector.log[entry] + by(index));
+                *vector = ranges.with(vector, entry, vector.log_entries[entry] + by(index));
                 index += 1;
             }
         }

@@ -11,7 +11,7 @@ use trial::noise_model::{MomentKind, NoiseModel};
 
 use super::*;
 use crate::likelihood::NoiseVector;
-use crate::likelihood::track::Track;
+use crate::likelihood::track::TrialSignals;
 use crate::output_error;
 use crate::testing::{Case, record, record_with_gyro};
 use trial::Trial;
@@ -46,13 +46,13 @@ fn disturbed(case: &Case, noise: &ExtraNoise) -> Trial {
         .collect();
     // The response is linear: the response to the extra rudder is added.
     let ship = case.ship();
-    let mut state = ship::first_order::State::default();
+    let mut state = ship::first_order::YawState::default();
     let mut heading = Vec::new();
     for row in 0..extra.len() {
         if row > 0 {
             let h = truth.time[row] - truth.time[row - 1];
             let (u0, u1) = (ship.K_over_T * extra[row - 1], ship.K_over_T * extra[row]);
-            state = ship::first_order::Transition::new(ship.inverse_T, h).advance(state, u0, (u1 - u0) / h);
+            state = ship::first_order::FirstOrderTransition::new(ship.inverse_T, h).advance(state, u0, (u1 - u0) / h);
         }
         heading.push(truth.heading[row] + state.heading + from_deg(case.noise_deg) * draw());
     }
@@ -109,12 +109,13 @@ fn the_score_is_the_derivative() {
     let trials = [disturbed(&noisy(), &ExtraNoise::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
     let records: Vec<Record> = trials
         .iter()
-        .map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true, None))
+        .map(|trial| Record::new(TrialSignals::new(trial).with_rates(trial.yaw_rate(), trial), true, None))
         .collect();
     for moment in MomentKind::ALL {
-        let plain = NoiseVector { moment, log: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() };
+        let plain = NoiseVector { moment, log_entries: [-6.0, 2.0, 0.0, 0.0, 0.0], ..NoiseVector::default() };
         let log = [-6.5, 3.0, -6.0, 1.0, -1.0];
-        let vectors = [plain, NoiseVector { moment, has_rudder_error: true, has_coloured_compass: true, log }];
+        let vectors =
+            [plain, NoiseVector { moment, has_rudder_error: true, has_coloured_compass: true, log_entries: log }];
         let a = 0.063;
         let fit = |a: f64, vectors: &[NoiseVector]| {
             // Beside another start, as a search evaluates them.
@@ -134,7 +135,7 @@ fn the_score_is_the_derivative() {
             for entry in vectors[number].active_entries(records[number].has_gyro()) {
                 let height = |by: f64| {
                     let mut vectors = vectors;
-                    vectors[number].log[entry] += by;
+                    vectors[number].log_entries[entry] += by;
                     fit(a, &vectors).restricted_deviance
                 };
                 let numeric = 0.5 * (height(1e-4) - height(-1e-4)) / 2e-4;
@@ -235,7 +236,7 @@ fn a_coloured_compass_is_named() {
 fn the_bound_knows_the_noise() {
     let case = noisy();
     let (trial, truth) = (case.trial(), case.ship());
-    let initial = ship::first_order::State { heading: case.truth().heading[0], yaw_rate: case.truth().yaw_rate[0] };
+    let initial = ship::first_order::YawState { heading: case.truth().heading[0], yaw_rate: case.truth().yaw_rate[0] };
     let noise = NoiseModel::compass(from_deg(0.1));
     let calm = cramer_rao(&trial, &truth, initial, &noise).expect("known").matrix;
     let walking = |degrees: f64| NoiseModel {

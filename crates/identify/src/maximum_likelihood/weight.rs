@@ -18,7 +18,7 @@ pub(super) struct Weight {
     /// Number of readings.
     pub readings: f64,
     /// Number of readings minus number of fitted unknowns.
-    pub freedom: f64,
+    pub degrees_of_freedom: f64,
     /// Standard deviation of the compass error over b, rad s², if a declared rudder error fixes it; `None` if the
     /// compass error follows from the residual.
     pub compass_sd_per_gain: Option<f64>,
@@ -35,7 +35,7 @@ impl Weight {
 
     /// Variance of the compass error at b and b δ_r, rad².
     pub fn variance(&self, b: f64, q: f64) -> f64 {
-        self.compass_sd_per_gain.map_or(self.rss(b, q) / self.freedom, |unit| (b * unit).powi(2))
+        self.compass_sd_per_gain.map_or(self.rss(b, q) / self.degrees_of_freedom, |unit| (b * unit).powi(2))
     }
 }
 

@@ -5,14 +5,14 @@ use crate::estimate::Uncertainty;
 use crate::testing::{Case, Start, record, steered};
 use approx::assert_relative_eq;
 use ship::angle::from_deg;
-use ship::first_order::State;
+use ship::first_order::YawState;
 
 fn method() -> OutputError {
     Settings::default().build().expect("default settings are valid")
 }
 
 /// Record whose heading is exactly the response to the recorded rudder.
-fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64) -> Trial {
+fn exact_record(response: &FirstOrder, initial: YawState, rows: usize, period: f64) -> Trial {
     let rudder = Case { samples: rows, period_s: period, start: Start::Rest, ..Case::default() }.truth().rudder;
     let time: Vec<f64> = (0..rows).map(|k| 5.0 + k as f64 * period).collect();
     let heading = steered(response, initial, &time, &rudder);
@@ -21,7 +21,7 @@ fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64)
 
 #[test]
 fn recovers_ships_of_either_stability_to_rounding() {
-    let initial = State { heading: 0.2, yaw_rate: -0.004 };
+    let initial = YawState { heading: 0.2, yaw_rate: -0.004 };
     for (inverse_T, K_over_T) in
         [(1.0 / 16.3, 0.1 / 16.3), (0.4, 0.03), (1e-6, 6e-3), (0.0, 6e-3), (-0.01, 5e-3), (-0.03, 6e-3)]
     {
@@ -73,7 +73,7 @@ fn no_start_beats_the_scan() {
         let trial = case.trial();
         let estimate = method().identify(std::slice::from_ref(&trial)).expect("excited");
         let best = estimate.diagnostic("heading_rmse_deg").expect("reported");
-        let mut profile = Profile::new(vec![Track::new(&trial)]);
+        let mut profile = Profile::new(vec![TrialSignals::new(&trial)]);
         for k in 0..=60 {
             for sign in [1.0, -1.0] {
                 let start = sign / (2.0 * 250f64.powf(k as f64 / 60.0));

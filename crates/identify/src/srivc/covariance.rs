@@ -16,14 +16,14 @@ pub(super) struct ResidualStatistics {
     /// Sum of squares of the heading about its mean, trial by trial, rad².
     pub total_sum_of_squares: f64,
     /// Correlation of neighbouring residuals.
-    pub lag1: f64,
+    pub lag1_correlation: f64,
     /// Number of residuals minus unknowns: three shared unknowns and two per record.
     pub degrees_of_freedom: f64,
     /// Covariance of the shared unknowns for a white residual e, σ² (Z̃ᵀZ̃)⁻¹.
-    pub white: Matrix3<f64>,
+    pub white_covariance: Matrix3<f64>,
     /// Covariance of the shared unknowns for a coloured residual, (Z̃ᵀZ̃)⁻¹ Ω (Z̃ᵀZ̃)⁻¹, Ω the long-run covariance of
     /// z̃ e.
-    pub robust: Matrix3<f64>,
+    pub robust_covariance: Matrix3<f64>,
 }
 
 impl ResidualStatistics {
@@ -66,10 +66,10 @@ impl ResidualStatistics {
             count,
             rss,
             total_sum_of_squares,
-            lag1: robust::lag1_autocorrelation(residuals.iter().map(Vec::as_slice)),
+            lag1_correlation: robust::lag1_autocorrelation(residuals.iter().map(Vec::as_slice)),
             degrees_of_freedom,
-            white: inverse * (rss / degrees_of_freedom),
-            robust: inverse * omega * inverse,
+            white_covariance: inverse * (rss / degrees_of_freedom),
+            robust_covariance: inverse * omega * inverse,
         })
     }
 }

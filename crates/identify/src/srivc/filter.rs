@@ -3,17 +3,17 @@
 //! Identification of Continuous-time Models from Sampled Data, chapter 4.
 
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
-use ship::first_order::{State, TangentTransition};
+use ship::first_order::{TangentTransition, YawState};
 
 use super::record::{FilterRow, SrivcRecord};
 
 /// Parameters common to all records: 1/T, K/T and K/T δ_r. The regression is linear in them, except for the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SharedParameters {
-    /// a = 1/T, 1/s.
-    pub a: f64,
+    /// a = 1/T in the direction of the filters, 1/s.
+    pub inverse_T: f64,
     /// b = K/T, 1/s².
-    pub b: f64,
+    pub K_over_T: f64,
     /// b δ_r, rad/s².
     pub offset: f64,
 }
@@ -22,7 +22,7 @@ pub(super) struct SharedParameters {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Point {
     pub shared: SharedParameters,
-    pub starts: Vec<State>,
+    pub starts: Vec<YawState>,
 }
 
 impl Point {
@@ -31,11 +31,11 @@ impl Point {
         let between = |from: f64, to: f64| from + share * (to - from);
         let (from, to) = (&self.shared, &other.shared);
         let shared = SharedParameters {
-            a: between(from.a, to.a),
-            b: between(from.b, to.b),
+            inverse_T: between(from.inverse_T, to.inverse_T),
+            K_over_T: between(from.K_over_T, to.K_over_T),
             offset: between(from.offset, to.offset),
         };
-        let start = |(from, to): (&State, &State)| State {
+        let start = |(from, to): (&YawState, &YawState)| YawState {
             heading: between(from.heading, to.heading),
             yaw_rate: between(from.yaw_rate, to.yaw_rate),
         };
@@ -52,30 +52,35 @@ impl Point {
 pub(super) struct Filters {
     shared: SharedParameters,
     transition: TangentTransition,
-    unit: State,
-    steered: State,
+    unit: YawState,
+    steered: YawState,
     lagged: f64,
-    pub motion: State,
-    sensitivity: State,
+    pub motion: YawState,
+    sensitivity: YawState,
 }
 
 impl Filters {
     /// Filters with pole −a of `shared`, before the first row.
-    fn new(shared: SharedParameters, start: State) -> Self {
+    fn new(shared: SharedParameters, start: YawState) -> Self {
         Self {
             shared,
-            transition: TangentTransition::new(shared.a, 0.0),
-            unit: State::default(),
-            steered: State::default(),
+            transition: TangentTransition::new(shared.inverse_T, 0.0),
+            unit: YawState::default(),
+            steered: YawState::default(),
             lagged: 0.0,
             motion: start,
-            sensitivity: State::default(),
+            sensitivity: YawState::default(),
         }
     }
 
     /// Advances the filters through `record` from `start`; calls `visit` at every observed row.
     #[inline]
-    pub fn run(record: &SrivcRecord, shared: SharedParameters, start: State, mut visit: impl FnMut(&FilterRow, &Self)) {
+    pub fn run(
+        record: &SrivcRecord,
+        shared: SharedParameters,
+        start: YawState,
+        mut visit: impl FnMut(&FilterRow, &Self),
+    ) {
         let mut filters = Self::new(shared, start);
         let mut before: Option<&FilterRow> = None;
         for row in &record.rows {
@@ -93,14 +98,14 @@ impl Filters {
     #[inline]
     fn advance(&mut self, before: &FilterRow, row: &FilterRow) {
         let h = row.interval;
-        if h != self.transition.value.h {
-            self.transition = TangentTransition::new(self.shared.a, h);
+        if h != self.transition.value.time_step {
+            self.transition = TangentTransition::new(self.shared.inverse_T, h);
         }
-        let SharedParameters { b, offset, .. } = self.shared;
+        let SharedParameters { K_over_T: b, offset, .. } = self.shared;
         let exact = &self.transition.value;
         let rate = 1.0 / h;
         let slope = (row.rudder - before.rudder) * rate;
-        let lag = State { heading: 0.0, yaw_rate: self.lagged };
+        let lag = YawState { heading: 0.0, yaw_rate: self.lagged };
         self.lagged = exact.advance(lag, before.heading, (row.heading - before.heading) * rate).yaw_rate;
         self.unit = exact.advance(self.unit, 1.0, 0.0);
         self.steered = exact.advance(self.steered, before.rudder, slope);
@@ -156,7 +161,7 @@ pub(super) struct InstrumentalEquations {
 
 impl InstrumentalEquations {
     /// One pass over `record` with the filters of `shared`; `None` if 1 and φ₁ are parallel, as after an overflow.
-    pub fn new(record: &SrivcRecord, shared: SharedParameters, start: State, left: LeftColumns) -> Option<Self> {
+    pub fn new(record: &SrivcRecord, shared: SharedParameters, start: YawState, left: LeftColumns) -> Option<Self> {
         let mut gram = SMatrix::<f64, 5, 5>::zeros();
         let mut cross = SMatrix::<f64, 5, 2>::zeros();
         Filters::run(record, shared, start, |row, filters| {
@@ -193,8 +198,8 @@ impl InstrumentalEquations {
 
     /// State at the first row for the solution θ = (a − â, b, b δ_r): the unknowns of 1 and φ₁ are ψ₀ and
     /// r₀ + (a − â) ψ₀.
-    pub fn start(&self, theta: &Vector3<f64>) -> State {
+    pub fn start(&self, theta: &Vector3<f64>) -> YawState {
         let inner = self.inner * (self.inner_target - self.inner_regressors * theta);
-        State { heading: inner[0], yaw_rate: inner[1] - theta[0] * inner[0] }
+        YawState { heading: inner[0], yaw_rate: inner[1] - theta[0] * inner[0] }
     }
 }

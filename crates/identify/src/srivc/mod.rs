@@ -30,7 +30,7 @@ use document::WarningCode;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use ship::{FirstOrder, ShortNumber};
 use trial::Trial;
 
@@ -112,7 +112,7 @@ impl Identifier for Srivc {
         Samples::from_trials(trials, MIN_ROWS)?;
         let mut records: Vec<SrivcRecord> = trials.iter().map(SrivcRecord::new).collect();
         let mut start = self.integral_least_squares(&records)?;
-        let backwards = start.point.shared.a < 0.0;
+        let backwards = start.point.shared.inverse_T < 0.0;
         let mut evaluations = 1;
         if backwards {
             records = records.iter().map(SrivcRecord::reversed).collect();
@@ -120,7 +120,7 @@ impl Identifier for Srivc {
             evaluations += 1;
         }
         let (solution, iterations) = self.iterate(&records, start)?;
-        let SharedParameters { a, b, offset } = solution.point.shared;
+        let SharedParameters { inverse_T: a, K_over_T: b, offset } = solution.point.shared;
         let sign = if backwards { -1.0 } else { 1.0 };
         let inverse_T = sign * a;
         if !(b > 0.0 && b.is_finite() && a.is_finite()) {
@@ -135,10 +135,10 @@ impl Identifier for Srivc {
             degrees_of_freedom: Some(residuals.degrees_of_freedom),
         };
         let count = residuals.count as f64;
-        let robust_covariance = covariance(&residuals.robust);
-        let white = covariance(&residuals.white);
+        let robust_covariance = covariance(&residuals.robust_covariance);
+        let white = covariance(&residuals.white_covariance);
         let (uncertainty, warning) =
-            crate::robust::reported_covariance(white, &robust_covariance, residuals.lag1, residuals.count);
+            crate::robust::reported_covariance(white, &robust_covariance, residuals.lag1_correlation, residuals.count);
         let mut warnings = Vec::from_iter(warning);
         if inverse_T < 0.0 {
             warnings.push(WarningCode::CourseUnstable.warning("course-unstable: 1/T is negative, and so are K and T"));
@@ -155,7 +155,7 @@ impl Identifier for Srivc {
                 ("r_squared", 1.0 - residuals.rss / residuals.total_sum_of_squares),
                 ("condition", solution.condition),
                 ("heading_rmse_deg", to_deg((residuals.rss / count).sqrt())),
-                ("lag1_autocorrelation", residuals.lag1),
+                ("lag1_autocorrelation", residuals.lag1_correlation),
             ],
             warnings,
         })
@@ -166,8 +166,8 @@ impl Srivc {
     /// Start of the iteration: filters with their pole at 0 and the regressors as instruments.
     fn integral_least_squares(&self, records: &[SrivcRecord]) -> Result<Solution, IdentifyError> {
         let zero = Point {
-            shared: SharedParameters { a: 0.0, b: 0.0, offset: 0.0 },
-            starts: vec![State::default(); records.len()],
+            shared: SharedParameters { inverse_T: 0.0, K_over_T: 0.0, offset: 0.0 },
+            starts: vec![YawState::default(); records.len()],
         };
         self.solve(records, &zero, LeftColumns::Regressors)
     }
@@ -185,7 +185,7 @@ impl Srivc {
             let last = solution.point;
             solution = self.solve(records, &last, LeftColumns::Instruments)?;
             let now = solution.point.shared;
-            let change = now.a - last.shared.a;
+            let change = now.inverse_T - last.shared.inverse_T;
             oscillates |= change * before < -0.5 * before * before;
             if oscillates {
                 share = (share * before / (before - change)).clamp(MIN_STEP_SHARE, 1.0);
@@ -193,8 +193,8 @@ impl Srivc {
             before = change;
             let gram = solution.blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>();
             let size = |theta: Vector3<f64>| theta.dot(&(gram * theta)).max(0.0).sqrt();
-            step = size(Vector3::new(change, now.b - last.shared.b, now.offset - last.shared.offset))
-                / size(Vector3::new(0.0, now.b, now.offset));
+            step = size(Vector3::new(change, now.K_over_T - last.shared.K_over_T, now.offset - last.shared.offset))
+                / size(Vector3::new(0.0, now.K_over_T, now.offset));
             if step <= self.settings.relative_step {
                 return Ok((solution, iteration));
             }
@@ -236,7 +236,8 @@ impl Srivc {
             .solve(&target.component_mul(&scale))
             .ok_or_else(|| singular(f64::INFINITY))?
             .component_mul(&scale);
-        let shared = SharedParameters { a: at.shared.a + theta[0], b: theta[1], offset: theta[2] };
+        let shared =
+            SharedParameters { inverse_T: at.shared.inverse_T + theta[0], K_over_T: theta[1], offset: theta[2] };
         let starts = blocks.iter().map(|block| block.start(&theta)).collect();
         Ok(Solution { point: Point { shared, starts }, condition, blocks })
     }

@@ -59,9 +59,10 @@ impl SrivcRecord {
             };
             let share = |t: f64| (t - time[last]) / (time[row] - time[last]);
             while next <= row {
-                while let Some(corner) = corners.next_if(|corner| corner.row < next) {
-                    if corner.row >= first {
-                        let angle = rudder[corner.row] + corner.rate_before * (corner.time - time[corner.row]);
+                while let Some(corner) = corners.next_if(|corner| corner.row_before < next) {
+                    if corner.row_before >= first {
+                        let angle =
+                            rudder[corner.row_before] + corner.rate_before * (corner.time - time[corner.row_before]);
                         push(corner.time, share(corner.time), angle, false);
                     }
                 }

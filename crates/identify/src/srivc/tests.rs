@@ -4,7 +4,7 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::from_deg;
-use ship::first_order::State;
+use ship::first_order::YawState;
 use statrs::distribution::{ContinuousCDF, Normal};
 use trial::noise_model::NoiseModel;
 
@@ -19,7 +19,7 @@ fn srivc() -> Srivc {
 /// Exact motion of `ship` under the steering of `case`, from a turning start.
 fn exact(case: &Case, ship: &FirstOrder) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let truth = case.truth();
-    let start = State { heading: 0.3, yaw_rate: from_deg(0.4) };
+    let start = YawState { heading: 0.3, yaw_rate: from_deg(0.4) };
     let heading = steered(ship, start, &truth.time, &truth.rudder);
     (truth.time, heading, truth.rudder)
 }
@@ -64,7 +64,7 @@ fn sd(values: &[f64]) -> f64 {
 /// Cramér–Rao standard deviations of K and T, relative, for white heading noise of standard deviation `sigma` (rad).
 fn cramer_rao(case: &Case, sigma: f64) -> [f64; 2] {
     let (truth, ship) = (case.truth(), case.ship());
-    let start = State { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
+    let start = YawState { heading: truth.heading[0], yaw_rate: truth.yaw_rate[0] };
     let bound = maximum_likelihood::cramer_rao(&case.trial(), &ship, start, &NoiseModel::compass(sigma));
     let (K, T) = bound.expect("a zig-zag informs on all").indices(&ship);
     [K, T].map(|index| index.sd.expect("a bound") / index.value)
@@ -90,15 +90,15 @@ impl Spread {
         let truth = [ship.K(), ship.T(), ship.rudder_bias];
         let (time, heading, rudder) = exact(case, &ship);
         let true_filter = Point {
-            shared: SharedParameters { a: ship.inverse_T, b: ship.K_over_T, offset: 0.0 },
-            starts: vec![State::default()],
+            shared: SharedParameters { inverse_T: ship.inverse_T, K_over_T: ship.K_over_T, offset: 0.0 },
+            starts: vec![YawState::default()],
         };
         for seed in 0..REPEATS {
             let noisy = heading.iter().zip(noise(seed)).map(|(psi, e)| psi + from_deg(case.noise_deg) * e).collect();
             let trial = record("noisy", time.clone(), noisy, rudder.clone());
             let least_squares =
                 srivc().solve(&[SrivcRecord::new(&trial)], &true_filter, LeftColumns::Regressors).expect("steered");
-            let SharedParameters { a, b, .. } = least_squares.point.shared;
+            let SharedParameters { inverse_T: a, K_over_T: b, .. } = least_squares.point.shared;
             let estimate = srivc().identify(&[trial]).expect("steered");
             let robust = estimate.robust_covariance.as_ref().expect("a robust covariance").indices(&estimate.response);
             let found = [estimate.K(), estimate.T(), estimate.rudder_bias()];
@@ -206,8 +206,8 @@ fn either_direction_of_time_gives_the_same_answer() {
         let start = method.integral_least_squares(&records).expect("steered");
         method.iterate(&records, start).expect("steered").0.point.shared
     });
-    assert_relative_eq!(forwards.a, -backwards.a, max_relative = 1e-7);
-    assert_relative_eq!(forwards.b, backwards.b, max_relative = 1e-7);
+    assert_relative_eq!(forwards.inverse_T, -backwards.inverse_T, max_relative = 1e-7);
+    assert_relative_eq!(forwards.K_over_T, backwards.K_over_T, max_relative = 1e-7);
     assert_relative_eq!(forwards.offset, backwards.offset, max_relative = 1e-6, epsilon = 1e-10);
 }
 
@@ -257,7 +257,7 @@ fn refuses_what_cannot_be_identified() {
     // In a steady turn K and δ_r act alike; only the last interval separates them.
     let mut rudder = vec![from_deg(10.0); 100];
     rudder[99] = from_deg(8.0);
-    let turn = steered(&Case::default().ship(), State::default(), &time, &rudder);
+    let turn = steered(&Case::default().ship(), YawState::default(), &time, &rudder);
     let strict = Settings { condition_limit: 1e3, ..Settings::default() }.build().expect("valid");
     let error = strict.identify(&[record("turn", time, turn, rudder)]).expect_err("nearly singular");
     assert!(matches!(error, IdentifyError::Singular { condition, limit: 1e3 } if condition > 1e3), "{error}");

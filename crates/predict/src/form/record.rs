@@ -142,12 +142,12 @@ fn circle(trial: &Trial) -> Classified {
     let passage = turn::resampled_record(trial, length / speed, Some(length)).ok_or_else(neither)?;
     let shown = turn.characteristics_within_record(&passage);
     shown["time_to_90_s"].ok_or_else(neither)?;
-    let rudder = to_deg(turn.rudder);
-    if (turn.rudder - CIRCLE_RUDDER).abs() > CIRCLE_RUDDER_TOLERANCE {
+    let rudder = to_deg(turn.max_rudder);
+    if (turn.max_rudder - CIRCLE_RUDDER).abs() > CIRCLE_RUDDER_TOLERANCE {
         return Err(format!("a turning circle with {rudder:.1}° of rudder; the form needs 35° or the largest angle"));
     }
-    if turn.before.abs() > CIRCLE_RUDDER_TOLERANCE {
-        let before = to_deg(turn.before);
+    if turn.rudder_before.abs() > CIRCLE_RUDDER_TOLERANCE {
+        let before = to_deg(turn.rudder_before);
         return Err(format!("the turning circle begins with the rudder at {before:.1}°, not from a straight course"));
     }
     let approach = (turn.approach_duration() / passage.period) as usize;

@@ -16,7 +16,7 @@ use crate::fonts::{LINE_SPACING, text_width};
 use crate::legend::{LegendEntry, LegendSymbol, outline_stroke};
 use crate::lines::wrap;
 use crate::number::{self, MISSING, significant};
-use crate::palette::{DOTTED, GRID, HEADING, INK, PAPER, SOLID};
+use crate::palette::{BACKGROUND, DOTTED, GRID, HEADING, INK, SOLID};
 use crate::sheet::{Grid, MAX_NAMES_SHARE, Sheet, TitledAxis};
 use crate::theme::Theme;
 
@@ -30,7 +30,7 @@ pub struct MapCell {
     /// Outline of the cell; `None` without an outline.
     pub outline: Option<Outline>,
     /// Number of trials behind the value; 0 if it is not known.
-    pub trials: u64,
+    pub trial_count: u64,
 }
 
 /// Reason for the outline of a cell.
@@ -58,7 +58,7 @@ pub enum Shades {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellMap {
     /// Titles of the horizontal and of the vertical axis.
-    pub titles: [String; 2],
+    pub axis_titles: [String; 2],
     /// Names of the columns.
     pub columns: Vec<String>,
     /// Names of the rows from the top.
@@ -109,9 +109,9 @@ impl CellMap {
         if theme.is_narrow() { usual } else { usual.max(higher) }
     }
 
-    /// Number of panels side by side: as many as leave room for the numbers in the cells, at most three; two if there
-    /// are four panels.
-    fn across(&self, theme: &Theme) -> usize {
+    /// Number of panels side by side: as many as leave every cell the width of its number, at least one and at most
+    /// three, at most two of four panels.
+    fn panels_side_by_side(&self, theme: &Theme) -> usize {
         let widest = |labels: &[String], font: f64| {
             labels.iter().map(|label| text_width(label, font, false)).fold(0.0, f64::max)
         };
@@ -141,13 +141,14 @@ pub(super) fn cells(data: &CellMap, finding: &str, theme: &Theme) -> PlotResult<
         &shown.map(|(_, dash, name)| LegendEntry::new(LegendSymbol::Outline(dash), *name)).collect::<Vec<_>>(),
     )?;
     // The frame is at the edges of the cells.
-    let column = TitledAxis::new(Axis::columns(&data.columns), data.titles[0].as_str());
-    let row = TitledAxis::new(Axis::rows(&data.rows, 0.5), data.titles[1].as_str());
+    let column = TitledAxis::new(Axis::columns(&data.columns), data.axis_titles[0].as_str());
+    let row = TitledAxis::new(Axis::rows(&data.rows, 0.5), data.axis_titles[1].as_str());
     let height = data.rows.len().max(1) as f64 * data.pitch(theme);
     let heads =
         data.panels.iter().map(|(head, _)| Some(LegendEntry::new(LegendSymbol::Nothing, head.as_ref()?))).collect();
     let shading = Shading::from_map(data);
-    let grid = Grid { heads, ..Grid::alike(data.panels.len().max(1), data.across(theme), column, row, height) };
+    let grid =
+        Grid { heads, ..Grid::alike(data.panels.len().max(1), data.panels_side_by_side(theme), column, row, height) };
     for (chart, (_, rows)) in sheet.grid(grid)?.iter().zip(&data.panels) {
         let places = rows.iter().enumerate().flat_map(|(y, row)| (0..row.len()).map(move |x| (x, y)));
         let cells: Vec<PlacedCell> = places
@@ -278,7 +279,7 @@ impl PlacedCell<'_> {
         let (RGBColor(r, g, b), opacity) = self.colour();
         // Relative luminance (ITU-R BT.709) over white paper decides between black and white text.
         let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
-        let colour = if 1.0 - opacity * (1.0 - luminance) > 0.5 { INK } else { PAPER };
+        let colour = if 1.0 - opacity * (1.0 - luminance) > 0.5 { INK } else { BACKGROUND };
         let number = |text: String, size: f64| TextLine { colour, ..TextLine::new(text, size, HPos::Center) };
         let value = match self.cell.value {
             Some(share) if is_shares && share <= 0.0 => return Ok(()),

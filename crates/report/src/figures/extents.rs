@@ -8,7 +8,7 @@ use crate::axis;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OutlierLimit {
     /// Multiple of the median extent.
-    pub times: f64,
+    pub extent_factor: f64,
     /// Centre of the axis; `None` for the median of the data, which is not supported for a symmetric axis.
     pub centre: Option<f64>,
     /// `true` if the axis is symmetric about the centre.
@@ -77,12 +77,12 @@ impl Extents {
     }
 
     /// Extents within the limit of an axis; an extent partly within it is shortened.
-    fn within(&self, OutlierLimit { times, centre, .. }: OutlierLimit) -> Vec<(f64, f64)> {
+    fn within(&self, OutlierLimit { extent_factor, centre, .. }: OutlierLimit) -> Vec<(f64, f64)> {
         let middles = self.item_ranges.iter().map(|(lo, hi)| 0.5 * (lo + hi));
         let centre = centre.or_else(|| upper_median(middles)).unwrap_or(0.0);
         let extents = self.item_ranges.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
         let usual = upper_median(extents.filter(|extent| *extent > 0.0)).unwrap_or(f64::INFINITY);
-        let room = times * usual.max(LEAST_USUAL * centre.abs());
+        let room = extent_factor * usual.max(LEAST_USUAL * centre.abs());
         let (least, most) = (centre - room, centre + room);
         let near = self.item_ranges.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);
         near.map(|(lo, hi)| (lo.max(least), hi.min(most))).collect()
@@ -131,7 +131,7 @@ mod tests {
         [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
         let ends = |data: &Extents, limit| data.ends(limit).0.expect("there are data");
         assert_eq!(ends(&data, None), (0.099, 9.9));
-        let limit = OutlierLimit { times: 4.0, centre: None, is_symmetric: false };
+        let limit = OutlierLimit { extent_factor: 4.0, centre: None, is_symmetric: false };
         assert!(ends(&data, Some(limit)).1 < 0.2, "{:?}", ends(&data, Some(limit)));
         data.fixed.push(1.0);
         assert_eq!(ends(&data, Some(limit)).1, 1.0);

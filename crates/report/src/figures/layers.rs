@@ -52,13 +52,13 @@ fn fitted(data: &Panels, theme: &Theme) -> Panels {
     let mut data = data.clone();
     if theme.is_narrow() {
         data.names_aside = false;
-        for group in data.groups.iter_mut().filter(|group| group.columns.is_none() && group.rows.len() == 1) {
-            group.columns = (group.x.len() > NARROW).then_some(NARROW);
+        for group in data.groups.iter_mut().filter(|group| group.multiples_across.is_none() && group.rows.len() == 1) {
+            group.multiples_across = (group.x.len() > NARROW).then_some(NARROW);
         }
         return data;
     }
     let height = |group: &PanelGroup| {
-        let rows = group.columns.map_or(1, |across| group.panels.len().div_ceil(across.max(1)));
+        let rows = group.multiples_across.map_or(1, |across| group.panels.len().div_ceil(across.max(1)));
         if group.has_equal_scales { 0.0 } else { group.rows.iter().map(|row| row.height).sum::<f64>() * rows as f64 }
     };
     let all: f64 = side_by_side(&data, theme).map(|groups| groups.iter().map(height).fold(0.0, f64::max)).sum();
@@ -173,7 +173,7 @@ fn mark_stroke(label: &str, theme: &Theme) -> Stroke {
 /// Number of panels of a group side by side; on a narrow page one fewer of small multiples, unless they are a unit.
 fn columns(group: &PanelGroup, theme: &Theme) -> usize {
     let narrower = usize::from(theme.is_narrow() && !group.is_unbroken);
-    group.columns.map_or(group.x.len(), |across| across.saturating_sub(narrower)).max(1)
+    group.multiples_across.map_or(group.x.len(), |across| across.saturating_sub(narrower)).max(1)
 }
 
 /// Extents of layers along one axis. If the axis is limited against outliers, every value of a line or band is a
@@ -206,13 +206,14 @@ fn grid(group: &PanelGroup, theme: &Theme) -> (Grid, bool) {
     let count = columns(group, theme);
     let mut is_cut = false;
     let layers = |keep: &dyn Fn(usize) -> bool| -> Vec<&Layer> {
-        let kept = group.panels.iter().enumerate().filter(|(index, _)| group.columns.is_some() || keep(*index));
+        let kept =
+            group.panels.iter().enumerate().filter(|(index, _)| group.multiples_across.is_some() || keep(*index));
         kept.flat_map(|(_, panel)| &panel.layers).collect()
     };
     // Marks reach beyond their points by their radius, so they need free space at both sides.
     let has_marks = layers(&|_| true).iter().any(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let mut column = |number: usize| {
-        let ruler = &group.x[if group.columns.is_some() { 0 } else { number }];
+        let ruler = &group.x[if group.multiples_across.is_some() { 0 } else { number }];
         let mut data = extents(layers(&|index| index % count == number).into_iter(), ruler, false);
         data.fixed.extend(group.vertical_lines.iter().map(|line| line.value));
         let (axis, cut) = ruler.axis(&data, if has_marks { PAD_SHARE } else { ACROSS_PAD });
@@ -222,30 +223,31 @@ fn grid(group: &PanelGroup, theme: &Theme) -> (Grid, bool) {
     let columns: Vec<TitledAxis> = (0..count.min(group.x.len() * count)).map(&mut column).collect();
     let mut row = |(number, row): (usize, &PanelRow)| {
         let mut data = extents(layers(&|index| index / count == number).into_iter(), &row.y, true);
-        data.fixed
-            .extend(row.levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())));
+        data.fixed.extend(
+            row.dashed_levels.iter().copied().chain(row.reference.iter().flat_map(|reference| reference.values())),
+        );
         let (axis, cut) = row.y.axis(&data, PAD_SHARE);
         is_cut |= cut;
         let (lo, hi) = axis.ends();
         // If the font is large relative to the panel, the data keep a part of it.
-        let taken = row.room[0] + row.room[1];
+        let taken = row.free_shares[0] + row.free_shares[1];
         let scale = (MAX_ROOM / taken).min(1.0);
-        let [below, above] = row.room.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
-        let axis = if row.room == [0.0; 2] { axis } else { axis.between(lo - below, hi + above) };
+        let [below, above] = row.free_shares.map(|share| scale * share * (hi - lo) / (1.0 - scale * taken));
+        let axis = if row.free_shares == [0.0; 2] { axis } else { axis.between(lo - below, hi + above) };
         (TitledAxis::new(axis, row.y.title.as_str()), theme.panel_height(row.height))
     };
     let rows: Vec<(TitledAxis, f64)> = group.rows.iter().enumerate().map(&mut row).collect();
     let head = |panel: &LayeredPanel| {
         // A layer with a name is in the legend.
         let is_nameless = |layer: &&Layer| layer.name.is_none() && !matches!(layer.kind, LayerKind::Marks(_));
-        let is_sample = |layer: &&Layer| group.columns.is_some() && is_nameless(layer);
+        let is_sample = |layer: &&Layer| group.multiples_across.is_some() && is_nameless(layer);
         let sample = panel.layers.first().filter(is_sample).and_then(|layer| layer.legend_symbol(theme, 1.0));
         let head =
-            [&panel.head, &panel.detail].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
+            [&panel.head, &panel.result].into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(": ");
         (!head.is_empty()).then(|| LegendEntry::new(sample.unwrap_or(LegendSymbol::Nothing), head))
     };
     let heads = group.panels.iter().map(head).collect();
-    let grid = match (group.columns, rows.first(), columns.first()) {
+    let grid = match (group.multiples_across, rows.first(), columns.first()) {
         (Some(_), Some((row, height)), Some(column)) => Grid {
             shared_title: Some(row.title.clone()),
             heads,
@@ -282,7 +284,7 @@ fn draw(charts: &[Chart], group: &PanelGroup, theme: &Theme, outside: &mut DataO
     let count = columns(group, theme);
     let mut dots = 0;
     for (index, (chart, panel)) in charts.iter().zip(&group.panels).enumerate() {
-        background(chart, theme, group, &group.rows[if group.columns.is_some() { 0 } else { index / count }])?;
+        background(chart, theme, group, &group.rows[if group.multiples_across.is_some() { 0 } else { index / count }])?;
         // Areas are drawn before lines.
         let is_band = |layer: &&Layer| matches!(layer.kind, LayerKind::Band(..));
         let (bands, layers): (Vec<&Layer>, Vec<&Layer>) = panel.layers.iter().partition(is_band);
@@ -291,7 +293,7 @@ fn draw(charts: &[Chart], group: &PanelGroup, theme: &Theme, outside: &mut DataO
         }
         chart.frame(theme)?;
         point_labels::draw(chart, &panel.layers, theme)?;
-        if group.columns.is_some() {
+        if group.multiples_across.is_some() {
             corner(chart, theme, panel)?;
         }
     }
@@ -301,13 +303,13 @@ fn draw(charts: &[Chart], group: &PanelGroup, theme: &Theme, outside: &mut DataO
 
 /// Draws what is behind the layers: lines at zero, levels, the reference and marked values of the horizontal axis.
 fn background(chart: &Chart, theme: &Theme, group: &PanelGroup, row: &PanelRow) -> PlotResult {
-    if row.zero {
+    if row.has_zero_line {
         chart.horizontal(0.0, zero_stroke(theme))?;
     }
-    if group.zero {
+    if group.has_zero_line {
         chart.vertical(None, 0.0, zero_stroke(theme))?;
     }
-    for level in &row.levels {
+    for level in &row.dashed_levels {
         chart.horizontal(*level, Stroke { dash: DASHED, ..Stroke::solid(INK, theme.thin) })?;
     }
     if let Some(reference) = &row.reference {
@@ -378,7 +380,7 @@ fn draw_marks(
     marks: &Marks,
     outside: &mut DataOutsideFrame,
 ) -> PlotResult {
-    let Marks { style, intervals, joined, side_by_side } = marks;
+    let Marks { style, intervals, joining_line: joined, side_by_side } = marks;
     let (name, curve, rect) = (layer.name.as_deref(), &layer.curve, chart.rect);
     let middles: Vec<Option<f64>> = curve.x.iter().map(|x| chart.page_x(*x)).collect();
     let across = if *side_by_side { spread_overlapping(&middles, 2.0 * theme.marker) } else { middles.clone() };

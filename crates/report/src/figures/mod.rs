@@ -19,7 +19,7 @@ pub use panels::{
     AxisLine, AxisSpec, Layer, LayerKind, LayeredPanel, Marks, PanelGroup, PanelRow, Panels, Pen, TickRule,
 };
 pub use rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-pub use shared::Reference95;
+pub use shared::ReferenceBand95;
 pub use zigzag_trial::{OvershootMark, TimeSpan, ZigZagMark, ZigZagPlot};
 
 use crate::drawing::Drawing;
@@ -52,7 +52,7 @@ impl Plot {
     }
 
     /// Mutable remark under the figure; `None` for a zig-zag, whose remark follows from its data.
-    pub fn note(&mut self) -> Option<&mut Option<String>> {
+    pub fn note_mut(&mut self) -> Option<&mut Option<String>> {
         match self {
             Self::Panels(data) => Some(&mut data.note),
             Self::Rows(data) => Some(&mut data.note),

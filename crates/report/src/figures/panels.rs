@@ -3,7 +3,7 @@
 //! [`super::layers`] draws it.
 
 use super::extents::{Extents, MAX_INTERVAL_SHARE, OutlierLimit};
-use super::shared::{Reference95, record_symbol};
+use super::shared::{ReferenceBand95, record_symbol};
 pub use crate::axis::TickRule;
 
 use plotters::style::RGBColor;
@@ -65,14 +65,15 @@ impl AxisSpec {
         Self::decimal(format!("yaw rate {} [°/s]", symbol("r")))
     }
 
-    /// The axis limited to `times` the median extent of the data from a centre; `None` for the median of the data.
-    pub fn within(self, times: f64, centre: Option<f64>) -> Self {
-        Self { outlier_limit: Some(OutlierLimit { times, centre, is_symmetric: false }), ..self }
+    /// The axis limited to `extent_factor` times the median extent of the data from a centre; `None` for the median of
+    /// the data.
+    pub fn limited_around(self, extent_factor: f64, centre: Option<f64>) -> Self {
+        Self { outlier_limit: Some(OutlierLimit { extent_factor, centre, is_symmetric: false }), ..self }
     }
 
-    /// The axis limited to ±`times` the median extent of the data, centred on zero.
-    pub fn about_zero(self, times: f64) -> Self {
-        Self { outlier_limit: Some(OutlierLimit { times, centre: Some(0.0), is_symmetric: true }), ..self }
+    /// The axis limited to ±`extent_factor` times the median extent of the data, centred on zero.
+    pub fn limited_about_zero(self, extent_factor: f64) -> Self {
+        Self { outlier_limit: Some(OutlierLimit { extent_factor, centre: Some(0.0), is_symmetric: true }), ..self }
     }
 
     /// The axis over `data`, and whether data are cut. `pad` is the free space at both ends of a linear axis other than
@@ -145,7 +146,7 @@ pub struct Marks {
     /// Intervals of the marks in their order, values of the vertical axis; `None` for a mark without an interval.
     pub intervals: Vec<Option<[f64; 2]>>,
     /// Line that joins the marks; `None` for separate marks.
-    pub joined: Option<Pen>,
+    pub joining_line: Option<Pen>,
     /// `true` if marks that would overlap are drawn side by side.
     pub side_by_side: bool,
 }
@@ -209,14 +210,14 @@ impl Layer {
         Self::new(
             name,
             PlotCurve { x, y },
-            LayerKind::Marks(Marks { style, intervals, joined: None, side_by_side: false }),
+            LayerKind::Marks(Marks { style, intervals, joining_line: None, side_by_side: false }),
         )
     }
 
     /// The marks joined by a line; a layer of another kind is unchanged.
     pub fn with_line(mut self, pen: Pen) -> Self {
         if let LayerKind::Marks(marks) = &mut self.kind {
-            marks.joined = Some(pen);
+            marks.joining_line = Some(pen);
         }
         self
     }
@@ -230,7 +231,7 @@ impl Layer {
     }
 
     /// Layer that may widen the axes by the share `widening` of the range of all other data, and is cut beyond.
-    pub fn within(self, widening: f64) -> Self {
+    pub fn widening_at_most(self, widening: f64) -> Self {
         Self { max_axis_widening: Some(widening), ..self }
     }
 
@@ -262,7 +263,7 @@ impl Layer {
             LayerKind::Record if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Record => record_symbol(theme, &self.curve),
             LayerKind::Dots(colour) | LayerKind::Cloud(colour) => LegendSymbol::Dots(*colour),
-            LayerKind::Marks(Marks { style, joined: Some(pen), .. }) => {
+            LayerKind::Marks(Marks { style, joining_line: Some(pen), .. }) => {
                 LegendSymbol::LineAndMarker(pen.stroke(theme), *style)
             }
             LayerKind::Marks(Marks { style, .. }) => LegendSymbol::Marker(*style),
@@ -281,13 +282,13 @@ pub struct PanelRow {
     /// Height, as a share of the width of the figure.
     pub height: f64,
     /// `true` if there is a horizontal line at zero.
-    pub zero: bool,
+    pub has_zero_line: bool,
     /// Values on the vertical axis of horizontal dashed lines, such as the limits of white noise.
-    pub levels: Vec<f64>,
+    pub dashed_levels: Vec<f64>,
     /// Reference value of the results with its 95 % band; `None` without a reference.
-    pub reference: Option<Reference95>,
+    pub reference: Option<ReferenceBand95>,
     /// Shares of the height that are free below and above the data.
-    pub room: [f64; 2],
+    pub free_shares: [f64; 2],
 }
 
 impl PanelRow {
@@ -298,7 +299,7 @@ impl PanelRow {
 
     /// Row of panels with a horizontal line at zero.
     pub fn zeroed(y: AxisSpec, height: f64) -> Self {
-        Self { zero: true, ..Self::new(y, height) }
+        Self { has_zero_line: true, ..Self::new(y, height) }
     }
 }
 
@@ -308,7 +309,7 @@ pub struct LayeredPanel {
     /// Text above the panel; `None` without one.
     pub head: Option<String>,
     /// Result, written after the head; `None` without one.
-    pub detail: Option<String>,
+    pub result: Option<String>,
     /// The layers, the first at the bottom.
     pub layers: Vec<Layer>,
 }
@@ -335,13 +336,13 @@ pub struct PanelGroup {
     pub vertical_lines: Vec<AxisLine>,
     /// Number of small multiples side by side, all with the first horizontal axis and the first row; `None` for panels
     /// in rows and columns.
-    pub columns: Option<usize>,
+    pub multiples_across: Option<usize>,
     /// `true` if small multiples stay side by side on a narrow page, too: a row of them is a unit.
     pub is_unbroken: bool,
     /// `true` if the group has half the width of the figure; two of them are side by side if there is room.
     pub is_half: bool,
     /// `true` if there is a vertical line at zero.
-    pub zero: bool,
+    pub has_zero_line: bool,
     /// `true` if a unit has the same length on both axes.
     pub has_equal_scales: bool,
 }
@@ -356,7 +357,7 @@ impl PanelGroup {
 
     /// Small multiples: panels with the same pair of axes, `across` of them side by side.
     pub fn multiples(across: usize, x: AxisSpec, row: PanelRow, panels: Vec<LayeredPanel>) -> Self {
-        Self { x: vec![x], rows: vec![row], panels, columns: Some(across), ..Self::default() }
+        Self { x: vec![x], rows: vec![row], panels, multiples_across: Some(across), ..Self::default() }
     }
 }
 

@@ -6,7 +6,7 @@ use plotters::style::{Color as _, RGBColor};
 use super::extents::{Extents, MAX_INTERVAL_SHARE};
 use super::piles::{PlacedItem, is_single, spread};
 use super::rows::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
-use super::shared::{BEYOND_AXIS_REMARK, Bars, Reference95, zero_stroke};
+use super::shared::{BEYOND_AXIS_REMARK, Bars, ReferenceBand95, zero_stroke};
 use crate::axis::{Axis, TickRule};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Stroke, TextLine, marker, page_units};
@@ -16,7 +16,7 @@ use crate::fonts::{LINE_SPACING, text_width};
 use crate::legend::{LegendEntry, LegendSymbol};
 use crate::lines::wrap;
 use crate::number::significant;
-use crate::palette::{CurveOrigin, CurveStyle, GRID, HEADING, INK, PAPER, RECORD};
+use crate::palette::{BACKGROUND, CurveOrigin, CurveStyle, GRID, HEADING, INK, RECORD};
 use crate::sheet::{Grid, MAX_NAMES_SHARE, Sheet, TitledAxis};
 use crate::theme::Theme;
 
@@ -25,8 +25,8 @@ impl RowItem {
         match &self.kind {
             RowKind::Mark(style, ..) | RowKind::Violin(style, ..) => LegendSymbol::Marker(*style),
             RowKind::Bar(style, _) => LegendSymbol::Line(bar_stroke(style, theme)),
-            RowKind::Thin(_) => LegendSymbol::Line(Stroke::solid(HEADING, theme.line)),
-            RowKind::Range(colour, _) => LegendSymbol::Line(range_stroke(*colour, theme)),
+            RowKind::ThinInterval(_) => LegendSymbol::Line(Stroke::solid(HEADING, theme.line)),
+            RowKind::WideInterval(colour, _) => LegendSymbol::Line(range_stroke(*colour, theme)),
             RowKind::Limit(_) => LegendSymbol::Upright(limit_stroke(theme)),
             RowKind::Heading => LegendSymbol::Nothing,
         }
@@ -39,7 +39,7 @@ impl RowItem {
                 data.clippable_values.extend(interval.iter().flatten().map(|end| (*end, MAX_INTERVAL_SHARE)));
                 vec![*value]
             }
-            RowKind::Thin(ends) | RowKind::Range(_, ends) => ends.to_vec(),
+            RowKind::ThinInterval(ends) | RowKind::WideInterval(_, ends) => ends.to_vec(),
             RowKind::Bar(_, value) => vec![0.0, *value],
             RowKind::Limit(value) => vec![*value],
             RowKind::Heading => Vec::new(),
@@ -60,7 +60,7 @@ impl RowItem {
 const BOXES: f64 = 4.0;
 
 fn bar_stroke(style: &CurveStyle, theme: &Theme) -> Stroke {
-    let opacity = if style.hollow || style.colour == RECORD { 0.45 } else { 1.0 };
+    let opacity = if style.is_hollow || style.colour == RECORD { 0.45 } else { 1.0 };
     Stroke { opacity, ..Stroke::solid(style.colour, 0.9 * theme.tick_font) }
 }
 
@@ -115,7 +115,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
         let columns = part.iter().map(side).collect();
         let charts = sheet.grid(Grid { columns, rows: vec![row.clone()], ..Grid::default() })?;
         for (chart, column) in charts.iter().zip(part) {
-            for row in data.shaded.iter().flat_map(|(_, rows)| rows).map(|&row| row as f64) {
+            for row in data.shaded_rows.iter().flat_map(|(_, rows)| rows).map(|&row| row as f64) {
                 let (left, right) = chart.x.ends();
                 chart.rectangle([left, right], [row - 0.5, row + 0.5], HEADING.mix(GROUND))?;
             }
@@ -167,13 +167,13 @@ fn stacked(items: &[RowItem]) -> usize {
 }
 
 fn entries(data: &NamedRows, theme: &Theme) -> Vec<LegendEntry> {
-    let lines = data.columns.iter().flat_map(|column| &column.lines);
+    let lines = data.columns.iter().flat_map(|column| &column.vertical_lines);
     let lines = lines.map(|(name, pen, _)| LegendEntry::new(LegendSymbol::Line(pen.stroke(theme)), name));
     let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
     let items = items.filter_map(|item| Some(LegendEntry::new(item.sample(theme), item.name.as_ref()?)));
     let mut entries: Vec<LegendEntry> = Vec::new();
     let ground = Stroke { opacity: GROUND, ..Stroke::solid(HEADING, theme.tick_font) };
-    let shaded = data.shaded.iter().map(|(name, _)| LegendEntry::new(LegendSymbol::Line(ground), name));
+    let shaded = data.shaded_rows.iter().map(|(name, _)| LegendEntry::new(LegendSymbol::Line(ground), name));
     for entry in lines.chain(items).chain(shaded) {
         match entries.iter_mut().find(|listed| listed.label == entry.label) {
             // A range belongs to the mark with the same name.
@@ -189,14 +189,15 @@ fn entries(data: &NamedRows, theme: &Theme) -> Vec<LegendEntry> {
 fn axis(column: &RowsColumn, theme: &Theme, panel: f64) -> Axis {
     let mut data = Extents::default();
     column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
-    data.fixed.extend(column.lines.iter().map(|(.., value)| *value).chain(column.included_values.iter().copied()));
+    data.fixed
+        .extend(column.vertical_lines.iter().map(|(.., value)| *value).chain(column.included_values.iter().copied()));
     // Numbers are right of all data.
     let widest: f64 = number_widths(column, theme).iter().sum();
     let room = (widest / panel).min(MAX_ROOM);
     let kept = if room > 0.0 { std::mem::take(&mut data.clippable_values) } else { Vec::new() };
     data.fixed.extend(kept.iter().map(|(value, _)| *value));
-    data.fixed.extend(column.reference.iter().flat_map(Reference95::values));
-    if !column.zero {
+    data.fixed.extend(column.reference.iter().flat_map(ReferenceBand95::values));
+    if !column.has_zero_line {
         return column.x.axis(&data, 0.06).0.with_room(room);
     }
     // The axis ends at zero if all data are on one side of it.
@@ -217,10 +218,10 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_dist
     if let Some(reference) = &column.reference {
         reference.vertical(chart, theme)?;
     }
-    if column.zero {
+    if column.has_zero_line {
         chart.vertical(None, 0.0, zero_stroke(theme))?;
     }
-    for (name, pen, value) in &column.lines {
+    for (name, pen, value) in &column.vertical_lines {
         chart.vertical(Some(name), *value, pen.stroke(theme))?;
     }
     let mut beyond = false;
@@ -234,7 +235,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_dist
     let (left, right, bottom) = (chart.data_right(), chart.rect.right(), chart.rect.bottom());
     if left < right {
         let corners = [(left, chart.rect.y), (right, chart.rect.y), (right, bottom), (left, bottom)];
-        chart.canvas.fill(&corners, PAPER, 1.0)?;
+        chart.canvas.fill(&corners, BACKGROUND, 1.0)?;
         chart.canvas.line(&[corners[0], corners[3]], Stroke::solid(GRID, theme.thin))?;
     }
     for (row, items) in column.rows.iter().enumerate() {
@@ -297,8 +298,8 @@ fn draw_item(chart: &Chart, theme: &Theme, placed: &PlacedItem, is_alone: bool) 
             let beyond = of_interval.transpose()?.unwrap_or(false);
             Ok(mark(chart, theme, placed, *value, is_alone)? || beyond)
         }
-        RowKind::Thin(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
-        RowKind::Range(colour, ends) => bar(*ends, false, range_stroke(*colour, theme)),
+        RowKind::ThinInterval(ends) => bar(*ends, false, Stroke::solid(HEADING, theme.line)),
+        RowKind::WideInterval(colour, ends) => bar(*ends, false, range_stroke(*colour, theme)),
         RowKind::Bar(style, value) => bar([0.0, *value], false, bar_stroke(style, theme)),
         RowKind::Limit(value) => {
             chart.line(name, [(*value, y - HALF), (*value, y + HALF)], limit_stroke(theme)).map(|()| false)
@@ -390,18 +391,18 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
         let text = TextLine::new(ends, theme.small_font, HPos::Left);
         beside(chart, [middle - apart, middle + apart], height, &text)?;
     }
-    let median = CurveStyle { hollow: true, ..CurveOrigin::Truth.style() };
+    let median = CurveStyle { is_hollow: true, ..CurveOrigin::Truth.style() };
     chart.marker(None, q[2], y, 0.6 * theme.marker, &median)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::palette::QUIET;
+    use crate::palette::UNHIGHLIGHTED;
 
     #[test]
     fn numbers_are_dark_and_have_room_for_their_marks() {
-        let style = CurveStyle { colour: QUIET, ..CurveOrigin::Truth.style() };
+        let style = CurveStyle { colour: UNHIGHLIGHTED, ..CurveOrigin::Truth.style() };
         let item = RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", style, 1.0, None) };
         let column = |items: usize| RowsColumn { rows: vec![vec![item.clone(); items]], ..RowsColumn::default() };
         let theme = Theme::screen();

@@ -4,7 +4,7 @@
 use plotters::style::RGBColor;
 
 use super::panels::{AxisSpec, Pen};
-use super::shared::Reference95;
+use super::shared::ReferenceBand95;
 use crate::palette::CurveStyle;
 
 /// Content of a row.
@@ -14,9 +14,9 @@ pub enum RowKind {
     /// edge.
     Mark(CurveStyle, f64, Option<[f64; 2]>),
     /// Interval as a thin line.
-    Thin([f64; 2]),
+    ThinInterval([f64; 2]),
     /// Interval as a wide bar in a pale colour.
-    Range(RGBColor, [f64; 2]),
+    WideInterval(RGBColor, [f64; 2]),
     /// Bar from zero to a value.
     Bar(CurveStyle, f64),
     /// Vertical line at a value, from the bottom to the top of the row.
@@ -80,7 +80,7 @@ impl RowItem {
     pub(super) fn is_value(&self) -> bool {
         match self.kind {
             RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
-            RowKind::Limit(_) | RowKind::Thin(_) | RowKind::Range(..) => false,
+            RowKind::Limit(_) | RowKind::ThinInterval(_) | RowKind::WideInterval(..) => false,
             RowKind::Violin(..) | RowKind::Heading => true,
         }
     }
@@ -94,11 +94,11 @@ pub struct RowsColumn {
     /// Items of every row.
     pub rows: Vec<Vec<RowItem>>,
     /// `true` if the axis includes zero, with a vertical line there; such an axis is linear.
-    pub zero: bool,
+    pub has_zero_line: bool,
     /// Reference value of the results with its 95 % band; `None` without a reference.
-    pub reference: Option<Reference95>,
+    pub reference: Option<ReferenceBand95>,
     /// Vertical lines across all rows: name in the legend, style, value.
-    pub lines: Vec<(String, Pen, f64)>,
+    pub vertical_lines: Vec<(String, Pen, f64)>,
     /// Values that the axis always includes.
     pub included_values: Vec<f64>,
 }
@@ -113,7 +113,7 @@ pub struct NamedRows {
     /// The columns, side by side.
     pub columns: Vec<RowsColumn>,
     /// Name of the shaded rows in the legend, and their indices; `None` without such rows.
-    pub shaded: Option<(String, Vec<usize>)>,
+    pub shaded_rows: Option<(String, Vec<usize>)>,
     /// Remark under the figure; `None` without a remark.
     pub note: Option<String>,
     /// Remark that is added if data are beyond an axis; `None` for the usual remark.

@@ -93,16 +93,16 @@ pub(super) fn spread_overlapping(places: &[Option<f64>], gap: f64) -> Vec<Option
 
 /// Reference value of results, such as the nominal 95 % of an interval, with its 95 % band.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Reference95 {
+pub struct ReferenceBand95 {
     /// Reference value.
     pub value: f64,
     /// Ends of the band.
     pub band: [f64; 2],
 }
 
-impl Reference95 {
+impl ReferenceBand95 {
     /// Reference value without a band.
-    pub fn without_band(value: f64) -> Self {
+    pub fn line_at(value: f64) -> Self {
         Self { value, band: [value; 2] }
     }
 

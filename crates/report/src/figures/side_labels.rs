@@ -43,7 +43,7 @@ pub(super) fn draw(charts: &[Chart], group: &PanelGroup, count: usize, theme: &T
     let across = group.x.first().map_or_else(String::new, |ruler| symbol(&ruler.title));
     let mut outside = Vec::new();
     for (index, (chart, panel)) in charts.iter().zip(&group.panels).enumerate().filter(|(k, _)| (k + 1) % count == 0) {
-        let row = &group.rows[if group.columns.is_some() { 0 } else { index / count }];
+        let row = &group.rows[if group.multiples_across.is_some() { 0 } else { index / count }];
         for layer in names(chart, theme, &panel.layers)? {
             let (x, y) = layer.curve.pairs().next().unwrap_or((f64::NAN, f64::NAN));
             let (x, y) = (significant(x, 3), significant(y, 3));

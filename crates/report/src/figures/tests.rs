@@ -51,20 +51,20 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
             Layer::new("record", wave(n, 0.2, 1.0), LayerKind::Record),
             Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(style.colour)),
             Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::from_origin(&CurveOrigin::Before) })
-                .within(0.5),
+                .widening_at_most(0.5),
             Layer::marks("shares", style, points(0.7)),
         ]
     };
     let row = |tick_rule| PanelRow {
-        levels: vec![-0.1, 0.1],
-        reference: Some(Reference95 { value: 0.5, band: [0.4, 0.6] }),
+        dashed_levels: vec![-0.1, 0.1],
+        reference: Some(ReferenceBand95 { value: 0.5, band: [0.4, 0.6] }),
         ..PanelRow::zeroed(AxisSpec::new("moment [° rudder]", tick_rule), 0.2)
     };
     let group = |tick_rule, is_half| {
         let mut group = PanelGroup::over(AxisSpec::new("yaw rate [°/s]", tick_rule), vec![(row(tick_rule), layers())]);
         group.panels[0].head = Some("explains 93 %".into());
         let vertical_lines = vec![AxisLine { value: 0.5, label: "period".into() }];
-        PanelGroup { vertical_lines, is_half, zero: true, ..group }
+        PanelGroup { vertical_lines, is_half, has_zero_line: true, ..group }
     };
     let layered = Panels {
         groups: vec![
@@ -89,7 +89,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ];
         LayeredPanel { head: Some(origin.label().into()), layers, ..LayeredPanel::default() }
     };
-    let ruler = |title: &str| AxisSpec::decimal(title).about_zero(2.2);
+    let ruler = |title: &str| AxisSpec::decimal(title).limited_about_zero(2.2);
     let t_row = PanelRow::zeroed(ruler("error of T [%]"), 0.24);
     let clouds = PanelGroup::multiples(3, ruler("error of K [%]"), t_row, methods().enumerate().map(cloud).collect());
     let named = |(number, origin): (usize, CurveOrigin)| {
@@ -102,7 +102,7 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     );
     let ships = LayerKind::Ships(INK, vec![wild, 10.0]);
     let track = vec![
-        Layer::line("drawn ships", wave(n, wild, 300.0), Pen::pale()).within(0.35),
+        Layer::line("drawn ships", wave(n, wild, 300.0), Pen::pale()).widening_at_most(0.35),
         Layer::line("most probable ship", wave(n, 3.0, 250.0), Pen::new(INK)),
         Layer::new("its heading", wave(n.min(2), wild, 250.0), ships),
     ];
@@ -122,10 +122,10 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
     let items = |row: usize| {
         let marks =
             methods().map(|own| RowItem::mark_below(own.label(), own.style(), size(row), Some([0.0, 2.0 * size(row)])));
-        let style = CurveStyle { hollow: row.is_multiple_of(2), ..CurveOrigin::After.style() };
+        let style = CurveStyle { is_hollow: row.is_multiple_of(2), ..CurveOrigin::After.style() };
         let others = [
-            RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).clipped_if_far(),
-            RowItem::new("50 %", RowKind::Range(HEADING, [0.1, size(row)])),
+            RowItem::new("90 %", RowKind::ThinInterval([size(row), 9.0])).clipped_if_far(),
+            RowItem::new("50 %", RowKind::WideInterval(HEADING, [0.1, size(row)])),
             RowItem { number: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(style, size(row))) },
             RowItem::new("limit", RowKind::Limit(size(row))),
             RowItem::new(
@@ -139,12 +139,12 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         ];
         marks.take(if row == 3 { 0 } else { 8 }).chain(others).collect::<Vec<RowItem>>()
     };
-    let column = |x: AxisSpec, zero| RowsColumn {
+    let column = |x: AxisSpec, has_zero_line| RowsColumn {
         x,
         rows: (0..n.min(5)).map(items).collect(),
-        zero,
-        reference: Some(Reference95::without_band(1.0)),
-        lines: vec![("truth".into(), Pen::new(INK), 0.2)],
+        has_zero_line,
+        reference: Some(ReferenceBand95::line_at(1.0)),
+        vertical_lines: vec![("truth".into(), Pen::new(INK), 0.2)],
         included_values: vec![-0.1],
     };
     let names: Vec<String> =
@@ -154,9 +154,9 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         names: names.clone(),
         columns: vec![
             column(AxisSpec::new("rms error [%]", TickRule::Logarithmic), false),
-            column(AxisSpec::decimal("coverage [%]").within(4.0, Some(0.0)), true),
+            column(AxisSpec::decimal("coverage [%]").limited_around(4.0, Some(0.0)), true),
         ],
-        shaded: Some(("as fitted".into(), vec![0])),
+        shaded_rows: Some(("as fitted".into(), vec![0])),
         note: Some("Rates are those of the gear.".into()),
         ..NamedRows::default()
     };
@@ -164,10 +164,10 @@ fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         value: (!empty).then(|| size(x + y)),
         interval: Some([80.0, 95.0]),
         outline: if x == y { Some(Outline::Correct) } else { (x == y + 1).then_some(Outline::Alias) },
-        trials: 0,
+        trial_count: 0,
     };
     let map = |shades: Shades, count: usize| CellMap {
-        titles: ["rudder step [°]".into(), "heading step [°]".into()],
+        axis_titles: ["rudder step [°]".into(), "heading step [°]".into()],
         columns: ["0", "0.1", "1"].map(str::to_owned).into(),
         rows: names.clone(),
         shades,
@@ -322,7 +322,7 @@ fn what_runs_off_is_cut_and_says_so() {
     };
     let band = |high: f64| {
         let line = |y: f64| PlotCurve::new([0.0, 1.0, 2.0], [-y, y, 0.0]);
-        let band = Layer::band("90 %", [line(15.0), line(high)], INK, 0.2).within(1.0);
+        let band = Layer::band("90 %", [line(15.0), line(high)], INK, 0.2).widening_at_most(1.0);
         drawn(vec![band, Layer::line("ship", line(20.0), Pen::new(INK))], "It is cut.").contains("It is cut.")
     };
     assert!(band(1e4) && !band(25.0));
@@ -346,7 +346,7 @@ fn large_type_leaves_a_heading_upright() {
 fn names_that_cannot_stand_side_by_side_are_turned() {
     let drawn = |name: &str| {
         let map = CellMap {
-            titles: ["named".into(), "missing".into()],
+            axis_titles: ["named".into(), "missing".into()],
             columns: vec![name.into(); 12],
             rows: vec!["a".into()],
             shades: Shades::Shares,
@@ -374,7 +374,7 @@ fn limits_make_room_for_their_labels() {
 #[test]
 fn a_line_leaves_its_panel_where_it_does() {
     let line = |end: f64, pen| Layer::line("", PlotCurve::new([0.0, 1.0], [0.0, end]), pen);
-    let layers = vec![line(1.0, Pen::new(INK)), line(10.0, Pen::new(palette::RUDDER)).within(0.0)];
+    let layers = vec![line(1.0, Pen::new(INK)), line(10.0, Pen::new(palette::RUDDER)).widening_at_most(0.0)];
     let data = Panels::over_time(vec![(PanelRow::new(AxisSpec::decimal("y"), 0.2), layers)]);
     let svg = Plot::from(data).draw("", &Theme::screen()).svg().to_owned();
     let rise = |colour: &str| -> f64 {
@@ -401,7 +401,7 @@ fn what_sets_no_axis_is_an_arrow_at_its_edge() {
     assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
     let far = |id: &str, k: f64| Layer::marks(id, CurveOrigin::Method(id.into()).style(), vec![(k, 160.0 * k, None)]);
     let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
-    let axis = |title: &str| AxisSpec::decimal(title).within(4.0, None);
+    let axis = |title: &str| AxisSpec::decimal(title).limited_around(4.0, None);
     let group = PanelGroup::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
     let figure = Plot::from(Panels { names_aside: true, ..Panels::new(group) }).draw("", &Theme::screen());
     assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());

@@ -14,7 +14,7 @@ use crate::curve::PlotCurve;
 use crate::drawing::Drawing;
 use crate::markup::symbol;
 use crate::number;
-use crate::palette::{CurveOrigin, CurveStyle, DIMENSION, HEADING, INK, Marker, RUDDER, SOLID};
+use crate::palette::{CurveOrigin, CurveStyle, DIMENSION_LINE, HEADING, INK, Marker, RUDDER, SOLID};
 use crate::theme::Theme;
 
 /// Point of the heading curve.
@@ -79,8 +79,9 @@ pub struct ZigZagPlot {
 /// Maximum number of marked executes: with more, neither lines nor numbers could be distinguished.
 const MAX_MARKED: usize = 60;
 
-const EXECUTE: CurveStyle = CurveStyle { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
-const EXTREMUM: CurveStyle = CurveStyle { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
+const EXECUTE: CurveStyle = CurveStyle { colour: INK, marker: Marker::Diamond, dash: SOLID, is_hollow: false };
+const EXTREMUM: CurveStyle =
+    CurveStyle { colour: DIMENSION_LINE, marker: Marker::Circle, dash: SOLID, is_hollow: true };
 
 /// Height of the heading panel, as a share of the width.
 const HEIGHT: f64 = 0.36;
@@ -128,7 +129,7 @@ impl ZigZagPlot {
         let has_times = self.initial_turning.is_some() || !self.check_yaw.is_empty();
         let room = [strip(has_times), strip(self.period.is_some())].map(|points| points / theme.panel_height(HEIGHT));
         let rows = vec![
-            (PanelRow { room, ..PanelRow::new(AxisSpec::heading(), HEIGHT) }, heading),
+            (PanelRow { free_shares: room, ..PanelRow::new(AxisSpec::heading(), HEIGHT) }, heading),
             (PanelRow::new(AxisSpec::rudder(), 0.13), vec![rudder]),
         ];
         let at = |mark: &ZigZagMark| AxisLine { value: mark.t_s, label: String::new() };
@@ -195,20 +196,20 @@ impl Dimensions<'_> {
         let (beyond, side) = if length > 2.6 * size { (0.0, 1.0) } else { (2.2 * size, -1.0) };
         let end = |(x, y): PagePoint, by: f64| (x + by * along.0, y + by * along.1);
         let canvas = &self.chart.canvas;
-        canvas.line(&[end(from, -beyond), end(to, beyond)], Stroke::solid(DIMENSION, self.theme.thin))?;
-        canvas.arrow_head(from, (-side * along.0, -side * along.1), size, DIMENSION)?;
-        canvas.arrow_head(to, (side * along.0, side * along.1), size, DIMENSION)
+        canvas.line(&[end(from, -beyond), end(to, beyond)], Stroke::solid(DIMENSION_LINE, self.theme.thin))?;
+        canvas.arrow_head(from, (-side * along.0, -side * along.1), size, DIMENSION_LINE)?;
+        canvas.arrow_head(to, (side * along.0, side * along.1), size, DIMENSION_LINE)
     }
 
     /// Draws a thin line from a point of the data to its dimension line.
     fn extension(&self, from: PagePoint, to: PagePoint) -> PlotResult {
-        let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION, 0.8 * self.theme.thin) };
+        let stroke = Stroke { opacity: 0.75, ..Stroke::solid(DIMENSION_LINE, 0.8 * self.theme.thin) };
         self.chart.canvas.line(&[from, to], stroke)
     }
 
     /// Writes the quantity at a dimension line.
     fn label(&self, place: PagePoint, text: &str) -> PlotResult {
-        let text = TextLine { colour: DIMENSION, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
+        let text = TextLine { colour: DIMENSION_LINE, ..TextLine::new(text, self.theme.small_font, HPos::Center) };
         self.chart.canvas.text_with_halo(place, &text)
     }
 

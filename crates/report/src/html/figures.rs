@@ -29,7 +29,7 @@ pub struct FigureFiles {
 impl FigureFiles {
     /// Files that [`crate::Drawing::write`] wrote into a folder under a stem. `None` for a file that cannot be read or
     /// is larger than 64 MiB: a page is complete without a figure.
-    pub fn written(folder: &Path, stem: &str) -> Self {
+    pub fn from_folder(folder: &Path, stem: &str) -> Self {
         let file = |kind: &str| {
             let path = folder.join(format!("{stem}.{kind}"));
             // Reading a pipe could wait forever.

@@ -24,8 +24,8 @@ impl Table {
     pub fn to_records(&self) -> Vec<Value> {
         let heads = self.heads();
         let is_number = self.columns.iter().flat_map(|column| {
-            let is_number = column.interval || column.alignment != Alignment::Left;
-            std::iter::repeat_n(is_number, if column.interval { 2 } else { 1 })
+            let is_number = column.is_interval || column.alignment != Alignment::Left;
+            std::iter::repeat_n(is_number, if column.is_interval { 2 } else { 1 })
         });
         let is_number: Vec<bool> = is_number.collect();
         let value = |cell: Cow<str>, is_number: bool| match cell.parse::<f64>() {
@@ -53,12 +53,12 @@ impl Table {
         let mut heads = Vec::with_capacity(self.columns.len());
         let mut of = "";
         for column in &self.columns {
-            if column.interval {
+            if column.is_interval {
                 heads.extend(["lower", "upper"].map(|end| column.named(&format!("{of} {end} 95"))));
             } else {
                 heads.push(column.named(&column.heading));
             }
-            of = if column.interval { of } else { &column.heading };
+            of = if column.is_interval { of } else { &column.heading };
         }
         heads
     }
@@ -66,16 +66,16 @@ impl Table {
     /// Cells of a row with numbers in the form for programs, two for an interval.
     fn flat<'a>(&'a self, row: &'a [Option<String>]) -> impl Iterator<Item = Option<Cow<'a, str>>> {
         self.cells(row).zip(&self.columns).flat_map(|(cell, column)| {
-            let ends = cell.filter(|_| column.interval).and_then(|cell| {
+            let ends = cell.filter(|_| column.is_interval).and_then(|cell| {
                 let (low, high) = cell.strip_prefix('[')?.strip_suffix(']')?.split_once(", ")?;
                 Some([low, high])
             });
-            let cells = match (column.interval, ends) {
+            let cells = match (column.is_interval, ends) {
                 (false, _) => [cell, None],
                 (true, None) => [None, None],
                 (true, Some(ends)) => ends.map(Some),
             };
-            cells.into_iter().take(if column.interval { 2 } else { 1 }).map(|cell| cell.map(readable))
+            cells.into_iter().take(if column.is_interval { 2 } else { 1 }).map(|cell| cell.map(readable))
         })
     }
 }
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn an_interval_is_two_numbers() {
-        let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["K"]).unit("1/s").interval());
+        let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["K"]).unit("1/s").interval95());
         table.push(["one", "0.1", "[−0.2, 4×10⁻¹]"]);
         table.push(["two", number::MISSING, number::MISSING]);
         assert!(table.to_text().contains("[−0.2, 4×10⁻¹]"));

@@ -14,15 +14,15 @@ pub struct TableColumn {
     /// Alignment of the cells.
     pub alignment: Alignment,
     /// `true` if the cells are intervals `[low, high]` of the column before; in CSV and JSON they are two columns.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub interval: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not", rename = "interval")]
+    pub is_interval: bool,
 }
 
 impl TableColumn {
     /// Heading and unit, as in `K [1/s]`.
     pub(super) fn head(&self) -> String {
         // An interval is next to the column whose unit it has.
-        if self.interval { self.heading.clone() } else { self.named(&self.heading) }
+        if self.is_interval { self.heading.clone() } else { self.named(&self.heading) }
     }
 
     /// Another heading with the unit of this column.
@@ -67,9 +67,14 @@ impl TableHead {
 
     /// Adds a column of 95 % intervals of the last column, in its unit.
     #[must_use]
-    pub fn interval(mut self) -> Self {
+    pub fn interval95(mut self) -> Self {
         let unit = self.columns.last().and_then(|column| column.unit.clone());
-        self.columns.push(TableColumn { heading: "95 %".to_owned(), unit, interval: true, ..TableColumn::default() });
+        self.columns.push(TableColumn {
+            heading: "95 %".to_owned(),
+            unit,
+            is_interval: true,
+            ..TableColumn::default()
+        });
         self
     }
 

@@ -3,7 +3,7 @@
 use super::content::Table;
 use super::head::TableColumn;
 use super::width::{self, Alignment};
-use crate::markdown::text as escape;
+use crate::markdown::escaped_text as escape;
 
 impl Table {
     /// Markdown table, padded so that the source is legible too. Ends with a line break.

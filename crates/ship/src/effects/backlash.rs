@@ -3,7 +3,8 @@
 //! Source: the play operator of Krasnosel'skii and Pokrovskii (1989), Systems with Hysteresis.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, Parameter,
+    ParameterPrior, RecordScales,
 };
 use crate::angle::DEGREE;
 use estimation::number::Real;
@@ -24,8 +25,8 @@ impl Backlash {
 }
 
 impl Effect for Backlash {
-    fn description(&self) -> Description {
-        Description {
+    fn description(&self) -> EffectDescription {
+        EffectDescription {
             id: "rudder_deadband",
             form: "backlash",
             equation: "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
@@ -37,7 +38,7 @@ impl Effect for Backlash {
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let ([mean, sd, largest], g) = (Self::prior(records), Self::HALF_WIDTH);
-        Some(CandidateEffect::new(*self, [Prior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
+        Some(CandidateEffect::new(*self, [ParameterPrior::normal(&g, mean, sd).within([0.0, largest.min(g.highest)])]))
     }
 
     fn acts_on(&self) -> EffectTarget {

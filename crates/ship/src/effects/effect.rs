@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use estimation::number::Real;
 
-use super::scenario_number::{NumberConversion, ScenarioNumber};
-use crate::dynamics::{MeasuredChannels, Regressor};
+use super::scenario_key::{NumberConversion, ScenarioKey};
+use crate::dynamics::{MeasuredChannels, RegressorChannel};
 use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
 
@@ -28,9 +28,9 @@ pub struct Parameter {
     /// Maximum physical value.
     pub highest: f64,
     /// `true` if the parameter changes sign when port and starboard are exchanged.
-    pub odd: bool,
+    pub is_odd: bool,
     /// Key in a scenario file; `None` for a parameter that no scenario has.
-    pub scenario_number: Option<ScenarioNumber>,
+    pub scenario_key: Option<ScenarioKey>,
 }
 
 impl Parameter {
@@ -44,39 +44,33 @@ impl Parameter {
         [neutral, typical]: [f64; 2],
         [lowest, highest]: [f64; 2],
     ) -> Self {
-        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false, scenario_number: None }
+        Self { key, symbol, unit, neutral, typical, lowest, highest, is_odd: false, scenario_key: None }
     }
 
     /// Parameter that changes its sign when port and starboard are exchanged.
     pub const fn odd(names: [&'static str; 3], values: [f64; 2], range: [f64; 2]) -> Self {
-        Self { odd: true, ..Self::even(names, values, range) }
+        Self { is_odd: true, ..Self::even(names, values, range) }
     }
 
     /// Parameter that a scenario file must give: `unit` is the size of the unit of its key in SI, `meaning` its text in
     /// the reference of keys.
     pub(super) const fn with_scenario_key(self, key: &'static str, unit: f64, meaning: &'static str) -> Self {
         Self {
-            scenario_number: Some(ScenarioNumber {
-                key,
-                unit,
-                meaning,
-                conversion: NumberConversion::Value,
-                default: None,
-            }),
+            scenario_key: Some(ScenarioKey { key, unit, meaning, conversion: NumberConversion::Value, default: None }),
             ..self
         }
     }
 
     /// Parameter with another conversion from the scenario file; unchanged if no scenario has it.
     pub(super) const fn with_conversion(self, conversion: NumberConversion) -> Self {
-        let Some(number) = self.scenario_number else { return self };
-        Self { scenario_number: Some(ScenarioNumber { conversion, ..number }), ..self }
+        let Some(number) = self.scenario_key else { return self };
+        Self { scenario_key: Some(ScenarioKey { conversion, ..number }), ..self }
     }
 
     /// Parameter with a default in the scenario file, in the unit of its key; unchanged if no scenario has it.
     pub(super) const fn by_default(self, default: f64) -> Self {
-        let Some(number) = self.scenario_number else { return self };
-        Self { scenario_number: Some(ScenarioNumber { default: Some(default), ..number }), ..self }
+        let Some(number) = self.scenario_key else { return self };
+        Self { scenario_key: Some(ScenarioKey { default: Some(default), ..number }), ..self }
     }
 
     /// `true` if the dimension of the parameter is unknown.
@@ -86,7 +80,7 @@ impl Parameter {
 
     /// Exponents of second and metre in the unit; angles have none.
     pub fn dimension(&self) -> Dimension {
-        particulars::dimension(self.unit)
+        particulars::unit_dimension(self.unit)
     }
 
     /// `true` if a value lies within the physical range.
@@ -156,14 +150,14 @@ impl EffectTarget {
     /// Acting rudder.
     pub const RUDDER: Self = Self { transforms_rudder: true, ..Self::NONE };
     /// Damping and gain.
-    pub const SCALE: Self = Self { scales_response: true, ..Self::NONE };
+    pub const RESPONSE_SCALE: Self = Self { scales_response: true, ..Self::NONE };
     /// Yaw acceleration.
     pub const MOMENT: Self = Self { adds_moment: true, ..Self::NONE };
 }
 
 /// Description of an effect: identifier, form, equation and parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Description {
+pub struct EffectDescription {
     /// Identifier, shared by all forms of the effect; fixed in files.
     pub id: &'static str,
     /// Form of the effect ("r³", "dead time"); fixed in files.
@@ -179,7 +173,7 @@ pub struct Description {
 /// `p` has the values of the parameters, in the order of [`parameters`](Self::parameters).
 pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug + Send + Sync {
     /// Description: identifier, form, equation and parameters.
-    fn description(&self) -> Description;
+    fn description(&self) -> EffectDescription;
 
     /// Identifier, shared by all forms of the effect; fixed in files.
     fn id(&self) -> &'static str {
@@ -202,18 +196,18 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
     }
 
     /// Keys of the parameters in a scenario file; `None` for a form that no scenario can declare.
-    fn scenario_numbers(&self) -> Option<Vec<ScenarioNumber>> {
-        self.parameters().iter().map(|parameter| parameter.scenario_number).collect()
+    fn scenario_keys(&self) -> Option<Vec<ScenarioKey>> {
+        self.parameters().iter().map(|parameter| parameter.scenario_key).collect()
     }
 
     /// Measured channel that the effect requires; without this channel the effect is zero. `None` if it requires no
     /// channel.
-    fn needs(&self) -> Option<Regressor> {
+    fn needs(&self) -> Option<RegressorChannel> {
         None
     }
 
     /// `true` if the effect uses this channel when it is measured.
-    fn uses(&self, channel: Regressor) -> bool {
+    fn uses(&self, channel: RegressorChannel) -> bool {
         self.needs() == Some(channel)
     }
 
@@ -234,8 +228,8 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
         Vec::new()
     }
 
-    /// Effect with these constants, in the order of [`constants`](Self::constants) and as many; by default, for an
-    /// effect without constants, `None`.
+    /// This effect with these values of its [`constants`](Self::constants), in their order; `None` if their number
+    /// differs, and by default, for an effect without constants.
     fn with_constants(&self, _constants: &[f64]) -> Option<Arc<dyn Effect>> {
         None
     }
@@ -269,7 +263,7 @@ pub trait Effect: EffectEquations<f64> + EffectEquations<Tangent> + fmt::Debug +
 
     /// Narrow-band random heading that is added to the observed heading; the deterministic response ignores it. `None`
     /// for an effect that is not random, or with a standard deviation of zero.
-    fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
+    fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBandProcess> {
         None
     }
 
@@ -359,7 +353,7 @@ pub struct RecordScales {
     /// Longest usual time between two rows of a record, s.
     pub row_interval: f64,
     /// Approach speed, m/s, for effects of the measured speed; `None` unless all records have it.
-    pub speed: Option<f64>,
+    pub approach_speed: Option<f64>,
     /// Approach speed, m/s, for effects of the measured sway velocity; `None` unless all records have it.
     pub approach_speed_for_sway: Option<f64>,
     /// Mean square of the relative wind speed, m²/s²; `None` unless all records have it.
@@ -367,12 +361,12 @@ pub struct RecordScales {
     /// Root mean square of the propeller revolutions, 1/s; `None` unless all records have them and they change.
     pub rms_propeller_rate: Option<f64>,
     /// First and last time, s, of the record in which an effect that depends on time would act.
-    pub span: [f64; 2],
+    pub time_span: [f64; 2],
 }
 
 /// Prior of one parameter of an effect: a normal or a uniform distribution on a range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prior {
+pub struct ParameterPrior {
     /// Prior mean, the start of a fit.
     pub mean: f64,
     /// Standard deviation; infinite for a uniform distribution on the range, zero for a parameter that is not fitted.
@@ -385,25 +379,25 @@ pub struct Prior {
     pub is_shape: bool,
     /// Index of the parameter that is subtracted: the fitted value and its prior are those of the difference. `None`
     /// for a parameter that is fitted directly.
-    pub reference: Option<usize>,
+    pub reference_parameter: Option<usize>,
 }
 
-impl Prior {
+impl ParameterPrior {
     /// Normal prior truncated to the physical range of a parameter.
     pub fn normal(parameter: &Parameter, mean: f64, sd: f64) -> Self {
         let Parameter { lowest, highest, .. } = *parameter;
-        Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, reference: None }
+        Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, reference_parameter: None }
     }
 
     /// Uniform prior on a range, for a shape parameter.
     pub fn uniform([lowest, highest]: [f64; 2]) -> Self {
         let mean = 0.5 * (lowest + highest);
-        Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, reference: None }
+        Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, reference_parameter: None }
     }
 
     /// Prior of a parameter that is not fitted and keeps this value.
     pub fn fixed(value: f64) -> Self {
-        Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, reference: None }
+        Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, reference_parameter: None }
     }
 
     /// Prior truncated to another range. If the upper end lies below the lower end, only the lower end is possible.
@@ -431,19 +425,19 @@ pub struct CandidateEffect {
     /// Effect.
     pub effect: Arc<dyn Effect>,
     /// Prior of every parameter.
-    pub priors: Vec<Prior>,
+    pub priors: Vec<ParameterPrior>,
 }
 
 impl CandidateEffect {
     /// Effect with its priors.
-    pub fn new(effect: impl Effect + 'static, priors: impl Into<Vec<Prior>>) -> Self {
+    pub fn new(effect: impl Effect + 'static, priors: impl Into<Vec<ParameterPrior>>) -> Self {
         Self { effect: Arc::new(effect), priors: priors.into() }
     }
 
     /// Effect with one parameter, and a normal prior about its neutral value; `sd` in the unit of the parameter.
     pub fn with_normal_prior(effect: impl Effect + 'static, sd: f64) -> Self {
         let parameter = &effect.parameters()[0];
-        let prior = Prior::normal(parameter, parameter.neutral, sd);
+        let prior = ParameterPrior::normal(parameter, parameter.neutral, sd);
         Self::new(effect, [prior])
     }
 }

@@ -4,10 +4,10 @@
 use std::sync::{Arc, LazyLock};
 
 use super::backlash::Backlash;
-use super::effect::{Description, Effect, EffectTarget, Parameter};
+use super::effect::{Effect, EffectDescription, EffectTarget, Parameter};
 use super::formula::{Formula, ListedFormula, ListedPrior};
-use super::scenario_number::NumberConversion::{Direction, OverT};
-use super::scenario_number::{PER_DEGREE, PER_DEGREE_SQUARED};
+use super::scenario_key::NumberConversion::{Direction, OverT};
+use super::scenario_key::{PER_DEGREE, PER_DEGREE_SQUARED};
 use super::second_order::SecondOrder;
 use super::speed_loss::SpeedLoss;
 use super::steering_lag::SteeringLag;
@@ -37,7 +37,7 @@ const fn row(
     parameters: &'static [Parameter],
     prior: ListedPrior,
 ) -> ListedEffect {
-    let description = Description { id, form, equation, parameters };
+    let description = EffectDescription { id, form, equation, parameters };
     Row(ListedFormula { description, acts_on, formula, prior, is_weather: false })
 }
 
@@ -48,7 +48,7 @@ const fn weather(
     parameters: &'static [Parameter],
     prior: ListedPrior,
 ) -> ListedEffect {
-    let description = Description { id, form, equation, parameters };
+    let description = EffectDescription { id, form, equation, parameters };
     Row(ListedFormula { description, acts_on: EffectTarget::MOMENT, formula, prior, is_weather: true })
 }
 
@@ -175,12 +175,12 @@ static ALL: LazyLock<Vec<Arc<dyn Effect>>> = LazyLock::new(|| {
 ///
 /// Constants of the record are at their neutral values: approach speed 1 m/s, one propeller revolution a second, first
 /// time 0 s, edge of a lasting moment 1 s.
-pub fn all() -> Vec<Arc<dyn Effect>> {
+pub fn all_effects() -> Vec<Arc<dyn Effect>> {
     ALL.clone()
 }
 
 /// Meaning of an effect, without a full stop; empty for an effect that no scenario can add.
-pub fn meaning(id: &str) -> &'static str {
+pub fn effect_meaning(id: &str) -> &'static str {
     MEANINGS.iter().find(|(other, _)| *other == id).map_or("", |(_, meaning)| meaning)
 }
 

@@ -14,7 +14,7 @@ mod effect;
 mod formula;
 pub mod instant;
 mod list;
-mod scenario_number;
+mod scenario_key;
 
 mod second_order;
 mod speed_loss;
@@ -24,12 +24,12 @@ mod wave_heading;
 
 pub use backlash::Backlash;
 pub use effect::{
-    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
-    Parameter, Prior, RecordScales, SecondOrderTimeConstants,
+    BaseFactors, CandidateEffect, Effect, EffectDescription, EffectEquations, EffectReal, EffectTarget, OperatingPoint,
+    Parameter, ParameterPrior, RecordScales, SecondOrderTimeConstants,
 };
 pub use formula::{ColumnFormula, Formula, FormulaError, MirrorSymmetry};
-pub use list::{all, listed_effect, meaning};
-pub use scenario_number::{NumberConversion, ScenarioNumber};
+pub use list::{all_effects, effect_meaning, listed_effect};
+pub use scenario_key::{NumberConversion, ScenarioKey};
 pub use second_order::SecondOrder;
 pub use speed_loss::SpeedLoss;
 pub use steering_lag::SteeringLag;
@@ -46,7 +46,7 @@ use crate::particulars::Dimension;
 /// Fails with the position and the expected symbols, and for the name of an effect of the list.
 pub fn parse_formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     let formula = Formula::parse(line)?;
-    if all().iter().any(|effect| effect.id() == formula.id()) {
+    if all_effects().iter().any(|effect| effect.id() == formula.id()) {
         let problem = format!("`{}` is on the list of effects; give the formula another name", formula.id());
         return Err(FormulaError { text: line.to_owned(), position: 0, problem });
     }
@@ -58,8 +58,8 @@ pub fn parse_formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
 ///
 /// A constant with a positive neutral value must be positive: an approach speed (m/s), a propeller rate (1/s), a length
 /// (m), an edge (s).
-pub fn find(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
-    let listed: Vec<Arc<dyn Effect>> = all().into_iter().filter(|effect| effect.id() == id).collect();
+pub fn find_effect(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+    let listed: Vec<Arc<dyn Effect>> = all_effects().into_iter().filter(|effect| effect.id() == id).collect();
     let effect = match listed.is_empty() {
         true => Formula::named(id, form).ok()?,
         false => listed.into_iter().find(|effect| effect.form() == form)?,
@@ -80,12 +80,15 @@ mod tests {
     /// Round trip: identifier, form and constants restore an effect.
     #[test]
     fn every_effect_is_found_by_what_is_written_of_it() {
-        for effect in all() {
+        for effect in all_effects() {
             let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
-            let again = find(effect.id(), effect.form(), &constants).expect("all are known");
+            let again = find_effect(effect.id(), effect.form(), &constants).expect("all are known");
             let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
             assert_eq!((again.id(), again.form(), read_back), (effect.id(), effect.form(), constants));
         }
-        assert!(find("second_order", "", &[1.0]).is_none() && find("speed_loss", "measured speed", &[-1.0]).is_none());
+        assert!(
+            find_effect("second_order", "", &[1.0]).is_none()
+                && find_effect("speed_loss", "measured speed", &[-1.0]).is_none()
+        );
     }
 }

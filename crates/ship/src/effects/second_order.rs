@@ -3,7 +3,7 @@
 //! Source: Nomoto, Taguchi, Honda and Hirano (1957), On the steering qualities of ships.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, Prior, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, Parameter, ParameterPrior, RecordScales,
     SecondOrderTimeConstants,
 };
 use estimation::number::Real;
@@ -23,8 +23,8 @@ const PARAMETERS: [Parameter; 2] = [
 ];
 
 impl Effect for SecondOrder {
-    fn description(&self) -> Description {
-        Description {
+    fn description(&self) -> EffectDescription {
+        EffectDescription {
             id: "second_order",
             form: "sway coupling",
             equation: "T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ'",
@@ -36,9 +36,10 @@ impl Effect for SecondOrder {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let time = records.ship_length_time;
         let shortest = PARAMETERS[0].lowest.max(0.1 * records.row_interval).max(0.04 * time);
-        let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).as_shape();
-        let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
-        Some(CandidateEffect::new(*self, [second, Prior { reference: Some(0), ..lead }]))
+        let second =
+            ParameterPrior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).as_shape();
+        let lead = ParameterPrior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
+        Some(CandidateEffect::new(*self, [second, ParameterPrior { reference_parameter: Some(0), ..lead }]))
     }
 
     fn acts_on(&self) -> EffectTarget {

@@ -5,11 +5,11 @@
 use std::sync::Arc;
 
 use super::effect::{
-    BaseFactors, CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior,
-    RecordScales,
+    BaseFactors, CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, Parameter,
+    ParameterPrior, RecordScales,
 };
-use super::scenario_number::PER_DEGREE_SQUARED;
-use crate::dynamics::Regressor;
+use super::scenario_key::PER_DEGREE_SQUARED;
+use crate::dynamics::RegressorChannel;
 use crate::particulars::Dimension;
 use estimation::number::Real;
 
@@ -43,7 +43,7 @@ pub enum SpeedLoss {
 
 impl SpeedLoss {
     /// Exponents (m_a, m_b) of a rudder in the free stream: K ~ U and T ~ 1/U.
-    pub const FREE_STREAM: [f64; 2] = [1.0, 2.0];
+    pub const FREE_STREAM_EXPONENTS: [f64; 2] = [1.0, 2.0];
 }
 
 #[rustfmt::skip]
@@ -54,7 +54,7 @@ const MODELLED: [Parameter; 3] = [
         .with_scenario_key("recovery-s", 1.0, "Time in which the speed comes back."),
     Parameter::even(["m_b", "m_b", "1"], [2.0, 2.0], [0.0, 3.0])
         .with_scenario_key("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
-        .by_default(SpeedLoss::FREE_STREAM[1]),
+        .by_default(SpeedLoss::FREE_STREAM_EXPONENTS[1]),
 ];
 const MEASURED: [Parameter; 2] = [
     Parameter::even(["m_a", "m_a", "1"], [0.0, 1.0], [-1.0, 3.0]),
@@ -72,7 +72,7 @@ const INFLOW: [Parameter; 3] = [
 const MIN_SPEED_RATIO: f64 = 0.05;
 
 impl Effect for SpeedLoss {
-    fn description(&self) -> Description {
+    fn description(&self) -> EffectDescription {
         let (form, equation, parameters): (_, _, &[Parameter]) = match self {
             Self::Modelled => {
                 ("modelled speed", "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²", &MODELLED)
@@ -87,7 +87,7 @@ impl Effect for SpeedLoss {
             ),
             Self::Propeller { .. } => ("measured propeller", "r' = −r/T + (K/T) (n/n₀)^m_n (δ + δ_r)", &PROPELLER),
         };
-        Description { id: "speed_loss", form, equation, parameters }
+        EffectDescription { id: "speed_loss", form, equation, parameters }
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
@@ -118,30 +118,34 @@ impl Effect for SpeedLoss {
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let time = records.ship_length_time;
         let propeller = |mean| match records.rms_propeller_rate {
-            Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
-            None => Prior::fixed(0.0),
+            Some(_) => ParameterPrior::normal(&INFLOW[2], mean, 0.25),
+            None => ParameterPrior::fixed(0.0),
         };
         match self {
             // With a measured speed, the speed loss is not modelled.
-            Self::Modelled if records.speed.is_some() => None,
+            Self::Modelled if records.approach_speed.is_some() => None,
             Self::Modelled => {
-                let recovery = Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
+                let recovery = ParameterPrior::normal(&MODELLED[1], 7.0 * time, 4.0 * time)
                     .within([time, 2.0 * records.duration.max(time)]);
-                let loss = Prior::normal(&MODELLED[0], 0.0, 1.0 * time);
-                Some(CandidateEffect::new(*self, [loss, recovery.as_shape(), Prior::fixed(Self::FREE_STREAM[1])]))
+                let loss = ParameterPrior::normal(&MODELLED[0], 0.0, 1.0 * time);
+                Some(CandidateEffect::new(
+                    *self,
+                    [loss, recovery.as_shape(), ParameterPrior::fixed(Self::FREE_STREAM_EXPONENTS[1])],
+                ))
             }
             Self::Measured { .. } => None,
             Self::Inflow { .. } => {
                 let inflow = Self::Inflow {
-                    approach_speed: records.speed?,
+                    approach_speed: records.approach_speed?,
                     approach_revolutions: records.rms_propeller_rate.unwrap_or(1.0),
                 };
-                let speed = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
+                let speed =
+                    [ParameterPrior::normal(&INFLOW[0], 1.0, 0.3), ParameterPrior::normal(&INFLOW[1], 0.5, 0.25)];
                 Some(CandidateEffect::new(inflow, [speed[0], speed[1], propeller(0.5)]))
             }
-            Self::Propeller { .. } if records.speed.is_some() => None,
+            Self::Propeller { .. } if records.approach_speed.is_some() => None,
             Self::Propeller { .. } => {
-                let prior = Prior::normal(&PROPELLER[0], Self::FREE_STREAM[1], 1.0);
+                let prior = ParameterPrior::normal(&PROPELLER[0], Self::FREE_STREAM_EXPONENTS[1], 1.0);
                 Some(CandidateEffect::new(
                     Self::Propeller { approach_revolutions: records.rms_propeller_rate? },
                     [prior],
@@ -151,19 +155,19 @@ impl Effect for SpeedLoss {
     }
 
     fn acts_on(&self) -> EffectTarget {
-        EffectTarget::SCALE
+        EffectTarget::RESPONSE_SCALE
     }
 
-    fn needs(&self) -> Option<Regressor> {
+    fn needs(&self) -> Option<RegressorChannel> {
         match self {
             Self::Modelled => None,
-            Self::Measured { .. } | Self::Inflow { .. } => Some(Regressor::Speed),
-            Self::Propeller { .. } => Some(Regressor::Propeller),
+            Self::Measured { .. } | Self::Inflow { .. } => Some(RegressorChannel::Speed),
+            Self::Propeller { .. } => Some(RegressorChannel::Propeller),
         }
     }
 
-    fn uses(&self, channel: Regressor) -> bool {
-        let also = matches!(self, Self::Inflow { .. }) && channel == Regressor::Propeller;
+    fn uses(&self, channel: RegressorChannel) -> bool {
+        let also = matches!(self, Self::Inflow { .. }) && channel == RegressorChannel::Propeller;
         also || self.needs() == Some(channel)
     }
 
@@ -198,7 +202,7 @@ impl<R: Real> EffectEquations<R> for SpeedLoss {
             Self::Modelled => {
                 let q = z[0].at_least(MIN_SPEED_RATIO);
                 // The free-stream exponent is not fitted and requires no power function.
-                let gain = if p[2] == R::from(Self::FREE_STREAM[1]) { q * q } else { q.powf(p[2]) };
+                let gain = if p[2] == R::from(Self::FREE_STREAM_EXPONENTS[1]) { q * q } else { q.powf(p[2]) };
                 BaseFactors { damping: q, gain }
             }
             Self::Measured { approach_speed } => match now.measured.speed {
@@ -212,12 +216,12 @@ impl<R: Real> EffectEquations<R> for SpeedLoss {
                 let change = |measured: Option<f64>, base: f64| measured.map_or(0.0, |value| value / base - 1.0);
                 let (q, n) = (
                     change(now.measured.speed, *approach_speed),
-                    change(now.measured.propeller, *approach_revolutions),
+                    change(now.measured.propeller_rate, *approach_revolutions),
                 );
                 let flow = (p[1] * q + p[2] * n + 1.0).at_least(MIN_SPEED_RATIO);
                 BaseFactors { damping: (p[0] * q + 1.0).at_least(MIN_SPEED_RATIO), gain: flow * flow }
             }
-            Self::Propeller { approach_revolutions } => match now.measured.propeller {
+            Self::Propeller { approach_revolutions } => match now.measured.propeller_rate {
                 Some(rate) => {
                     let q = R::from((rate / approach_revolutions).max(MIN_SPEED_RATIO));
                     BaseFactors { damping: R::from(1.0), gain: q.powf(p[0]) }

@@ -1,7 +1,8 @@
 //! Steering lag: delay between the recorded and the acting rudder by dead time, first-order lag or clock offset.
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, Parameter,
+    ParameterPrior, RecordScales,
 };
 use estimation::number::Real;
 
@@ -23,12 +24,12 @@ const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.
 const MIN_LAG_S: f64 = 0.02;
 
 impl Effect for SteeringLag {
-    fn description(&self) -> Description {
+    fn description(&self) -> EffectDescription {
         let (form, equation, parameters): (_, _, &[Parameter]) = match self {
             Self::DeadTime => ("dead time", "T r' + r = K (δ(t − τ) + δ_r)", &DEAD_TIME),
             Self::FirstOrder => ("first-order lag", "T r' + r = K (δ_e + δ_r), τ_E δ_e' + δ_e = δ", &FIRST_ORDER),
         };
-        Description { id: "steering_lag", form, equation, parameters }
+        EffectDescription { id: "steering_lag", form, equation, parameters }
     }
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
@@ -37,7 +38,10 @@ impl Effect for SteeringLag {
         Some(match self {
             Self::DeadTime => {
                 let longest = (4.0 * sd).min(DEAD_TIME[0].highest);
-                CandidateEffect::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
+                CandidateEffect::new(
+                    *self,
+                    [ParameterPrior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])],
+                )
             }
             Self::FirstOrder => {
                 // A lag below a quarter of the sampling interval is not resolved. If this exceeds the maximum lag,
@@ -45,7 +49,7 @@ impl Effect for SteeringLag {
                 let shortest = Some(MIN_LAG_S.max(0.25 * row_interval)).filter(|lag| *lag < FIRST_ORDER[0].highest)?;
                 CandidateEffect::new(
                     *self,
-                    [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
+                    [ParameterPrior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
                 )
             }
         })
@@ -110,11 +114,11 @@ mod tests {
             max_rudder: 0.35,
             duration: 1e5,
             row_interval,
-            speed: None,
+            approach_speed: None,
             approach_speed_for_sway: None,
             mean_square_wind_speed: None,
             rms_propeller_rate: None,
-            span: [0.0, 1e5],
+            time_span: [0.0, 1e5],
         };
         for effect in [SteeringLag::DeadTime, SteeringLag::FirstOrder] {
             assert!(effect.candidate(&records(1.0)).is_some());

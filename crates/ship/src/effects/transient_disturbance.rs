@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Parameter, Prior, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, Parameter,
+    ParameterPrior, RecordScales,
 };
 use super::instant::{EDGE_ROWS, ONSET_TIME, REACH_WIDTHS};
 use crate::angle::DEGREE;
@@ -49,12 +50,12 @@ const MAX_DURATION_SHARE: f64 = 0.2;
 const END_MARGIN_SHARE: f64 = 0.05;
 
 impl Effect for TransientDisturbance {
-    fn description(&self) -> Description {
+    fn description(&self) -> EffectDescription {
         let (form, equation, parameters): (_, _, &[Parameter]) = match self {
             Self::Passing => ("moment for a while", "T r' + r = K (δ + δ_r + m s(t; t_c, d))", &PASSING),
             Self::Lasting { .. } => ("moment that stays", "T r' + r = K (δ + δ_r + m s(t; t₀))", &LASTING),
         };
-        Description { id: "transient_disturbance", form, equation, parameters }
+        EffectDescription { id: "transient_disturbance", form, equation, parameters }
     }
 
     fn constants(&self) -> Vec<(f64, Dimension)> {
@@ -65,8 +66,10 @@ impl Effect for TransientDisturbance {
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
-        let &[edge] = constants else { return None };
-        Some(Arc::new(Self::Lasting { edge }))
+        match (self, constants) {
+            (Self::Lasting { .. }, &[edge]) => Some(Arc::new(Self::Lasting { edge })),
+            _ => None,
+        }
     }
 
     fn is_time_dependent(&self) -> bool {
@@ -82,18 +85,19 @@ impl Effect for TransientDisturbance {
     }
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
-        let RecordScales { row_interval, span: [start, end], .. } = *records;
+        let RecordScales { row_interval, time_span: [start, end], .. } = *records;
         let duration = end - start;
-        let moment = Prior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
+        let moment = ParameterPrior::normal(&MOMENT, 0.0, MOMENT_SD_RAD);
         if let Self::Lasting { .. } = self {
-            let instant = Prior::uniform([start + END_MARGIN_SHARE * duration, end - END_MARGIN_SHARE * duration]);
+            let instant =
+                ParameterPrior::uniform([start + END_MARGIN_SHARE * duration, end - END_MARGIN_SHARE * duration]);
             return Some(CandidateEffect::new(Self::Lasting { edge: EDGE_ROWS * row_interval }, [moment, instant]));
         }
         // The centre stays a quarter of the maximum duration away from both ends, so at least three quarters of every
         // pulse are in the record.
         let margin = MAX_DURATION_SHARE * 0.25 * duration;
         let range = [(3.0 * row_interval).max(0.5), MAX_DURATION_SHARE * duration];
-        let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(range)];
+        let place = [ParameterPrior::uniform([start + margin, end - margin]), ParameterPrior::uniform(range)];
         Some(CandidateEffect::new(*self, [moment, place[0], place[1]]))
     }
 

@@ -2,9 +2,11 @@
 //!
 //! Source: the wave model of Fossen (2011), Handbook of Marine Craft Hydrodynamics and Motion Control.
 
-use super::effect::{CandidateEffect, Description, Effect, EffectEquations, EffectTarget, Parameter, RecordScales};
+use super::effect::{
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, Parameter, RecordScales,
+};
 use crate::angle::DEGREE;
-use crate::narrow_band::NarrowBand;
+use crate::narrow_band::NarrowBandProcess;
 use estimation::number::Real;
 
 /// Wave yaw ξ'' + 2ζω₀ ξ' + ω₀² ξ = w, added to the observed heading; the deterministic response ignores it.
@@ -22,8 +24,8 @@ const PARAMETERS: [Parameter; 3] = [
 ];
 
 impl Effect for WaveHeading {
-    fn description(&self) -> Description {
-        Description {
+    fn description(&self) -> EffectDescription {
+        EffectDescription {
             id: "wave_yaw",
             form: "narrow band",
             equation: "ψ_seen = ψ + ξ, ξ'' + 2ζω₀ ξ' + ω₀² ξ = white noise",
@@ -44,8 +46,8 @@ impl Effect for WaveHeading {
         true
     }
 
-    fn random_heading(&self, p: &[f64]) -> Option<NarrowBand> {
-        (p[0] > 0.0).then(|| NarrowBand { sd: p[0], frequency: p[1], damping: p[2] })
+    fn random_heading(&self, p: &[f64]) -> Option<NarrowBandProcess> {
+        (p[0] > 0.0).then(|| NarrowBandProcess { sd: p[0], frequency: p[1], damping: p[2] })
     }
 }
 

@@ -3,7 +3,7 @@
 //! Source: Bech (1968), the reversed spiral test.
 
 use super::Response;
-use crate::dynamics::{Dynamics, Input};
+use crate::dynamics::{Dynamics, ShipInput};
 use crate::replayable::Replayable;
 
 /// Maximum rudder of the search, rad.
@@ -45,7 +45,7 @@ impl Response {
     /// At constant yaw rate and rudder the states of effects settle linearly, so one Newton step per state is exact.
     fn excess(&self, yaw_rate: f64, rudder: f64, memory: &mut Memory) -> f64 {
         let Memory { state, rate } = memory;
-        let input = Input { rudder, ..Input::default() };
+        let input = ShipInput { rudder, ..ShipInput::default() };
         self.initialise(0.0, yaw_rate, &input, state);
         let slow = self.coupling.as_ref().map(|(_, place)| *place);
         for place in (2..state.len()).filter(|place| Some(*place) != slow) {

@@ -2,7 +2,7 @@ use super::*;
 use crate::Tangent;
 use crate::dynamics::MeasuredChannels;
 use crate::effects;
-use crate::first_order::{State, Transition};
+use crate::first_order::{FirstOrderTransition, YawState};
 use crate::replay::{RecordedSignals, replay, replay_states};
 use crate::signal::Polyline;
 use approx::assert_relative_eq;
@@ -29,7 +29,7 @@ fn heading_at_end(response: &Response, rudder: &Polyline, side: f64) -> f64 {
         sway: Some(&sway),
         wind_speed: Some(&wind),
         wind_from: Some(&from),
-        propeller: Some(&propeller),
+        propeller_rate: Some(&propeller),
     };
     let mut last = f64::NAN;
     replay(response, &recorded, &times, response.largest_step(), &mut state, |_, motion| last = motion.heading);
@@ -39,7 +39,7 @@ fn heading_at_end(response: &Response, rudder: &Polyline, side: f64) -> f64 {
 fn with_effect(effect: Arc<dyn Effect>, value: impl Fn(&Parameter) -> f64, side: f64) -> Response {
     let mut parameters = BASE_VALUES.to_vec();
     parameters[2] *= side;
-    parameters.extend(effect.parameters().iter().map(|p| if p.odd { side * value(p) } else { value(p) }));
+    parameters.extend(effect.parameters().iter().map(|p| if p.is_odd { side * value(p) } else { value(p) }));
     ResponseModel::new(vec![effect]).with_parameters(parameters)
 }
 
@@ -47,12 +47,16 @@ fn with_effect(effect: Arc<dyn Effect>, value: impl Fn(&Parameter) -> f64, side:
 fn the_base_is_the_closed_form() {
     let response = ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec());
     let signal = rudder(1.0);
-    let mut state = State::default();
+    let mut state = YawState::default();
     for k in 0..signal.times().len() - 1 {
         let h = signal.times()[k + 1] - signal.times()[k];
         let slope = (signal.values()[k + 1] - signal.values()[k]) / h;
         let b = BASE_VALUES[1];
-        state = Transition::new(BASE_VALUES[0], h).advance(state, b * (signal.values()[k] + BASE_VALUES[2]), b * slope);
+        state = FirstOrderTransition::new(BASE_VALUES[0], h).advance(
+            state,
+            b * (signal.values()[k] + BASE_VALUES[2]),
+            b * slope,
+        );
     }
     assert_relative_eq!(heading_at_end(&response, &signal, 1.0), state.heading, max_relative = 1e-9);
 }
@@ -60,7 +64,7 @@ fn the_base_is_the_closed_form() {
 #[test]
 fn a_neutral_effect_is_no_effect() {
     let base = heading_at_end(&ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         let model = with_effect(effect.clone(), |p| p.neutral, 1.0);
         let heading = heading_at_end(&model, &rudder(1.0), 1.0);
         assert!((heading - base).abs() < 1e-8, "{} ({}): {heading} is not {base}", effect.id(), effect.form());
@@ -70,7 +74,7 @@ fn a_neutral_effect_is_no_effect() {
 #[test]
 fn every_effect_acts_is_finite_and_keeps_its_mirror_symmetry() {
     let base = heading_at_end(&ResponseModel::first_order().with_parameters(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         let starboard = heading_at_end(&with_effect(effect.clone(), |p| p.typical, 1.0), &rudder(1.0), 1.0);
         let port = heading_at_end(&with_effect(effect.clone(), |p| p.typical, -1.0), &rudder(-1.0), -1.0);
         let name = format!("{} ({})", effect.id(), effect.form());
@@ -84,7 +88,7 @@ fn every_effect_acts_is_finite_and_keeps_its_mirror_symmetry() {
 
 #[test]
 fn effects_without_their_channel_are_silent() {
-    for effect in effects::all().iter().filter(|effect| effect.needs().is_some()) {
+    for effect in effects::all_effects().iter().filter(|effect| effect.needs().is_some()) {
         let response = with_effect(effect.clone(), |p| p.typical, 1.0);
         let mut state = vec![0.0; response.dimension()];
         response.approach(0.0, 0.01, &mut state);
@@ -92,7 +96,7 @@ fn effects_without_their_channel_are_silent() {
         response.rates(
             0.0,
             &state,
-            &Input { rudder: 0.1, measured: MeasuredChannels::default(), ..Input::default() },
+            &ShipInput { rudder: 0.1, measured: MeasuredChannels::default(), ..ShipInput::default() },
             &mut rate,
         );
         assert_relative_eq!(rate[1], -BASE_VALUES[0] * 0.01 + BASE_VALUES[1] * 0.11, max_relative = 1e-12);
@@ -106,7 +110,7 @@ fn an_effect_acts_where_it_says() {
         sway: Some(0.2),
         wind_speed: Some(3.0),
         wind_from: Some(0.8),
-        propeller: Some(1.2),
+        propeller_rate: Some(1.2),
     };
     let now = OperatingPoint {
         t: 95.0,
@@ -117,7 +121,7 @@ fn an_effect_acts_where_it_says() {
         K_over_T: 0.006,
         measured: &measured,
     };
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
         let z = vec![0.15; effect.states()];
         let acts = f64::effect_equations(effect.as_ref());
@@ -144,7 +148,7 @@ fn a_replay_carries_its_derivatives() {
         replay_states(&response, &recorded, &times, |_, _| 0.25, &mut state, |_, _, _| {});
         state[0]
     };
-    for effect in effects::all().into_iter().filter(|effect| effect.needs().is_none()) {
+    for effect in effects::all_effects().into_iter().filter(|effect| effect.needs().is_none()) {
         let mut values = BASE_VALUES.to_vec();
         values.extend(effect.parameters().iter().map(|p| p.typical));
         let model = ResponseModel::new(vec![Arc::clone(&effect)]);
@@ -195,7 +199,7 @@ fn small_steps_are_taken_where_motion_is_fast() {
 /// start only effects of time, and the constants are the constants of the equations.
 #[test]
 fn an_effect_is_what_it_says() {
-    for effect in effects::all().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {
+    for effect in effects::all_effects().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {
         let name = format!("{} ({})", effect.id(), effect.form());
         let response = with_effect(effect.clone(), |p| p.typical, 1.0);
         let turning = |response: &Response, heading: f64, from: f64| {
@@ -217,7 +221,7 @@ fn an_effect_is_what_it_says() {
             "{name}"
         );
         let constants: Vec<f64> = effect.constants().iter().map(|(constant, _)| constant + 1.5).collect();
-        let other = effects::find(effect.id(), effect.form(), &constants).expect("all are known");
+        let other = effects::find_effect(effect.id(), effect.form(), &constants).expect("all are known");
         let other = turning(&with_effect(other, |p| p.typical, 1.0), 0.0, 0.0);
         assert_eq!((turning(&response, 0.0, 0.0) - other).abs() > 1e-9, !constants.is_empty(), "{name}");
     }

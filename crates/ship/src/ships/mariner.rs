@@ -7,16 +7,16 @@ use std::sync::Arc;
 
 use super::user::second_order_response;
 use super::{Ship, ShipModel};
-use crate::linear::SecondOrderIndices;
+use crate::linear::SecondOrderNomotoIndices;
 use crate::particulars::Particulars;
-use crate::vessel::abkowitz::{Abkowitz, Derivatives, LateralDerivatives};
+use crate::vessel::abkowitz::{Abkowitz, AbkowitzDerivatives, LateralDerivatives};
 
 const PARTICULARS: Particulars = Particulars { length: 160.93, speed: 7.7175 };
 /// Unit of the printed table.
 const E5: f64 = 1e-5;
 
 /// Derivatives of Chislett and Strøm-Tejsen (1965), as printed: prime, rudder positive to port.
-pub const DERIVATIVES: Derivatives = Derivatives {
+pub const DERIVATIVES: AbkowitzDerivatives = AbkowitzDerivatives {
     m: 798.0 * E5,
     Iz: 39.2 * E5,
     xG: -0.023,
@@ -72,7 +72,7 @@ pub const DERIVATIVES: Derivatives = Derivatives {
 };
 
 /// Rounded indices of [`DERIVATIVES`]: K = 0.185 1/s, T1 = 118 s, T2 = 7.8 s, T3 = 18.5 s.
-pub const INDICES: SecondOrderIndices = SecondOrderIndices { K: 0.185, T1: 118.0, T2: 7.8, T3: 18.5 };
+pub const INDICES: SecondOrderNomotoIndices = SecondOrderNomotoIndices { K: 0.185, T1: 118.0, T2: 7.8, T3: 18.5 };
 
 fn mariner(id: &'static str, name: &'static str, source: &'static str, model: ShipModel) -> Ship {
     Ship {

@@ -3,7 +3,7 @@
 //! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees of
 //! freedom. Only parameter sets whose source was seen are included. [`user`] makes ships from the numbers of a user.
 //!
-//! To add a ship, add a file with a function that returns the [`Ship`], and one line in [`all`].
+//! To add a ship, add a file with a function that returns the [`Ship`], and one line in [`all_ships`].
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -70,7 +70,7 @@ impl Ship {
 }
 
 /// All ships of the project, in the order of reports: response models first.
-pub fn all() -> Vec<Ship> {
+pub fn all_ships() -> Vec<Ship> {
     vec![
         yukun::ship(),
         mariner::second_order(),
@@ -86,8 +86,8 @@ pub fn all() -> Vec<Ship> {
 }
 
 /// Ship with this identifier; `None` for an unknown identifier.
-pub fn find(id: &str) -> Option<Ship> {
-    all().into_iter().find(|ship| ship.id == id)
+pub fn find_ship(id: &str) -> Option<Ship> {
+    all_ships().into_iter().find(|ship| ship.id == id)
 }
 
 #[cfg(test)]

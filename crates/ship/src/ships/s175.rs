@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::{Ship, ShipModel};
-use crate::dynamics::Input;
+use crate::dynamics::ShipInput;
 use crate::particulars::Particulars;
 use crate::vessel::{Hull, MIN_SPEED_SHARE};
 
@@ -127,7 +127,7 @@ impl Hull for ContainerHull {
 
     /// Accelerations from m' a' = F', a = a' U²/L (r' by U²/L²); the disturbance adds the yaw moment N'δ δ at approach
     /// speed.
-    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
+    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &ShipInput) -> [f64; 3] {
         let Particulars { length: L, speed: U0 } = PARTICULARS;
         let U = surge.hypot(sway).max(MIN_SPEED_SHARE * U0);
         let (u, v, r) = (surge / U, sway / U, yaw * L / U);
@@ -145,8 +145,9 @@ impl Hull for ContainerHull {
             + RESISTANCE * force * sin
             + (M + MY) * v * r;
         let across = lateral(Y, v, r) + (1.0 + AH) * force * cos - (M + MX) * u * r;
-        let moment =
-            lateral(N, v, r) + (XR + AH * XH) * force * cos + self.rudder_slope * input.disturbance * (U0 / U).powi(2);
+        let moment = lateral(N, v, r)
+            + (XR + AH * XH) * force * cos
+            + self.rudder_slope * input.disturbance_rudder * (U0 / U).powi(2);
         let det = (M + MY) * INERTIA - COUPLING * COUPLING;
         let unit = U * U / L;
         [

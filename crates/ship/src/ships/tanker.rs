@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::{Ship, ShipModel};
-use crate::dynamics::Input;
+use crate::dynamics::ShipInput;
 use crate::particulars::Particulars;
 use crate::vessel::Hull;
 
@@ -62,7 +62,7 @@ impl Hull for TankerHull {
     }
 
     /// Accelerations by the equations of the source; the disturbance adds the yaw moment N_ccδ c² δ at approach speed.
-    fn acceleration(&self, [u, v, r]: [f64; 3], input: &Input) -> [f64; 3] {
+    fn acceleration(&self, [u, v, r]: [f64; 3], input: &ShipInput) -> [f64; 3] {
         let L = PARTICULARS.length;
         let [thrust, cc] = self.thrust_and_stream(u);
         let delta = -input.rudder;
@@ -83,7 +83,7 @@ impl Hull for TankerHull {
             + ccbbd * stalled
             + self.by_thrust[0] * L * thrust;
         let [uv, avr, ccd, ccbbd] = N;
-        let disturbed = -self.thrust_and_stream(PARTICULARS.speed)[1] * input.disturbance;
+        let disturbed = -self.thrust_and_stream(PARTICULARS.speed)[1] * input.disturbance_rudder;
         let moment = uv * u * v
             + L * avr * v.abs() * r
             + ccd * (cc * delta + disturbed)

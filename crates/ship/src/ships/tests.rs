@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use approx::assert_relative_eq;
 
 use super::*;
-use crate::dynamics::{Input, Motion};
-use crate::linear::PrimeSwayYaw;
+use crate::dynamics::{Motion, ShipInput};
+use crate::linear::PrimeSwayYawMatrices;
 use crate::replay::{RecordedSignals, replay};
 use crate::signal::Polyline;
 use crate::vessel::mmg::{BySign, Mmg};
@@ -45,17 +45,17 @@ fn turning_rate_deg(ship: &Ship, delta_deg: f64) -> f64 {
 
 #[test]
 fn identifiers_are_unique_and_found() {
-    let ids: BTreeSet<_> = all().iter().map(|ship| ship.id.clone()).collect();
-    assert_eq!(ids.len(), all().len());
+    let ids: BTreeSet<_> = all_ships().iter().map(|ship| ship.id.clone()).collect();
+    assert_eq!(ids.len(), all_ships().len());
     for id in ids {
-        assert_eq!(find(&id).expect("listed").id, id);
+        assert_eq!(find_ship(&id).expect("listed").id, id);
     }
-    assert!(find("titanic").is_none());
+    assert!(find_ship("titanic").is_none());
 }
 
 #[test]
 fn particulars_and_steering_gear_are_positive() {
-    for ship in all() {
+    for ship in all_ships() {
         let particulars = ship.particulars.map(|p| [p.length, p.speed]);
         for value in particulars.iter().flatten().chain(&ship.rudder_rate).chain(&ship.largest_rudder) {
             assert!(value.is_finite() && *value > 0.0, "{}: {value}", ship.id);
@@ -67,7 +67,7 @@ fn particulars_and_steering_gear_are_positive() {
 
 #[test]
 fn a_straight_approach_stays_finite_and_a_rudder_turns_to_its_own_side() {
-    for ship in all() {
+    for ship in all_ships() {
         let dynamics = ship.dynamics();
         let (state, motion) = held_rudder(dynamics.as_ref(), 0.0, 600.0, dynamics.largest_step());
         assert!(every_finite(&state), "{}", ship.id);
@@ -86,13 +86,13 @@ fn a_straight_approach_stays_finite_and_a_rudder_turns_to_its_own_side() {
 /// Accelerations at standstill, in drift and astern: they stay finite, because a search may visit any state.
 #[test]
 fn rates_are_finite_wherever_the_state_is() {
-    for ship in all() {
+    for ship in all_ships() {
         let dynamics = ship.dynamics();
         let mut straight = vec![0.0; dynamics.dimension()];
         dynamics.approach(1.0, 0.0, &mut straight);
         let mut rate = straight.clone();
         for delta_deg in [-35.0_f64, 0.0, 35.0] {
-            let input = Input { rudder: delta_deg.to_radians(), disturbance: 0.02, ..Input::default() };
+            let input = ShipInput { rudder: delta_deg.to_radians(), disturbance_rudder: 0.02, ..ShipInput::default() };
             for yaw_rate in [-0.05, 0.0, 0.05] {
                 for share in [-0.5, 0.0, 1e-9, 0.05, 0.5, 1.0, 1.5] {
                     for sway in [-1.0, 0.0, 1.0] {
@@ -117,15 +117,15 @@ fn rates_are_finite_wherever_the_state_is() {
 /// the rudder. (A rudder also causes a sway force, so for a hull only the larger part of its acceleration remains.)
 #[test]
 fn a_disturbance_acts_like_the_rudder_it_is_equivalent_to() {
-    for ship in all() {
+    for ship in all_ships() {
         let dynamics = ship.dynamics();
         let mut state = vec![0.0; dynamics.dimension()];
         dynamics.approach(0.0, 0.0, &mut state);
         let angle = 0.01;
-        let acceleration = |input: Input| dynamics.motion(0.0, &state, &input).yaw_acceleration;
-        let still = acceleration(Input::default());
-        let by_rudder = acceleration(Input { rudder: angle, ..Input::default() }) - still;
-        let by_disturbance = acceleration(Input { disturbance: angle, ..Input::default() }) - still;
+        let acceleration = |input: ShipInput| dynamics.motion(0.0, &state, &input).yaw_acceleration;
+        let still = acceleration(ShipInput::default());
+        let by_rudder = acceleration(ShipInput { rudder: angle, ..ShipInput::default() }) - still;
+        let by_disturbance = acceleration(ShipInput { disturbance_rudder: angle, ..ShipInput::default() }) - still;
         match ship.model {
             ShipModel::Hull(_) => {
                 let share = by_disturbance / by_rudder;
@@ -159,7 +159,7 @@ fn heading_after_reversals(dynamics: &dyn Dynamics, unit: f64, largest_step: f64
 /// Change of the final heading with an eighth of the maximum step: less than 0.0001°.
 #[test]
 fn the_largest_step_is_small_enough() {
-    for ship in all() {
+    for ship in all_ships() {
         let dynamics = ship.dynamics();
         let unit = ship.particulars.map_or(10.0, |p| p.length / p.speed);
         let step = dynamics.largest_step();
@@ -179,13 +179,13 @@ fn linear_equations_are_the_slopes_of_the_hull() {
     tanker.rudder.gammaR = BySign { positive: 0.5, negative: 0.5 };
     let tanker = Mmg::at_speed(tanker, 8.0).expect("balances");
     let cargo_ship = mariner::hull_model();
-    let hulls: [(&dyn Hull, PrimeSwayYaw); 2] =
+    let hulls: [(&dyn Hull, PrimeSwayYawMatrices); 2] =
         [(&tanker, tanker.linearised()), (&cargo_ship, cargo_ship.linearised())];
-    for (hull, PrimeSwayYaw { M, N, b }) in hulls {
+    for (hull, PrimeSwayYawMatrices { M, N, b }) in hulls {
         let Particulars { length: L, speed: U } = hull.particulars();
         let at = |v: f64, r: f64, rudder: f64| {
             let velocity = [U, v * U, r * U / L];
-            let [_, sway, yaw] = hull.acceleration(velocity, &Input { rudder, ..Input::default() });
+            let [_, sway, yaw] = hull.acceleration(velocity, &ShipInput { rudder, ..ShipInput::default() });
             [sway * L / (U * U), yaw * L * L / (U * U)]
         };
         let e = 1e-5;
@@ -230,6 +230,6 @@ fn the_first_order_ship_of_the_paper_is_exactly_that() {
     let truth = yukun::ship().first_order().expect("exactly first order");
     assert_relative_eq!(truth.K(), 0.1, max_relative = 1e-12);
     assert_relative_eq!(truth.T(), 16.3, max_relative = 1e-12);
-    let first_order_ships = all().iter().filter(|ship| ship.first_order().is_some()).count();
+    let first_order_ships = all_ships().iter().filter(|ship| ship.first_order().is_some()).count();
     assert_eq!(first_order_ships, 1);
 }

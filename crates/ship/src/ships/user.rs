@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::{Ship, ShipModel};
 use crate::effects::{Effect, Parameter, SecondOrder};
 use crate::first_order::FirstOrder;
-use crate::linear::SecondOrderIndices;
+use crate::linear::SecondOrderNomotoIndices;
 use crate::particulars::Particulars;
 use crate::response::{Response, ResponseModel};
 use crate::short_number::ShortNumber;
@@ -96,11 +96,11 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
 /// Fails if [`first_order`] fails for K and T1, if T2 is not positive, if T3 is not finite, and if T2 or T3 lies
 /// outside the range that [`SecondOrder`] declares.
 pub fn second_order(
-    indices: SecondOrderIndices,
+    indices: SecondOrderNomotoIndices,
     rudder_bias: f64,
     particulars: Option<Particulars>,
 ) -> Result<Ship, ShipError> {
-    let SecondOrderIndices { K, T1, T2, T3 } = indices;
+    let SecondOrderNomotoIndices { K, T1, T2, T3 } = indices;
     check_indices(K, T1, "T1")?;
     check("T2", T2, T2 > 0.0, "it must be positive; for a course-unstable ship T1 is negative")?;
     check("T3", T3, true, "it must be finite")?;
@@ -127,7 +127,7 @@ pub enum HullError {
 ///
 /// Fails for particulars outside the range of ships, or whose mean hull has no steady approach.
 pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
-    let hull = Mmg::at_speed(prior::hull_prior(particulars)?.parameters, particulars.speed)?;
+    let hull = Mmg::at_speed(prior::hull_prior(particulars)?.mean_parameters, particulars.speed)?;
     let HullParticulars { length, speed, .. } = *particulars;
     let name = format!("MMG hull by particulars, L = {length} m, U = {speed} m/s");
     let scale = Some(Particulars { length, speed });
@@ -136,12 +136,12 @@ pub fn hull(particulars: &HullParticulars) -> Result<Ship, HullError> {
 
 /// Second-order response with further effects and their parameter values.
 pub(super) fn second_order_response(
-    indices: SecondOrderIndices,
+    indices: SecondOrderNomotoIndices,
     rudder_bias: f64,
     further: Vec<Arc<dyn Effect>>,
     values: &[f64],
 ) -> Response {
-    let SecondOrderIndices { K, T1, T2, T3 } = indices;
+    let SecondOrderNomotoIndices { K, T1, T2, T3 } = indices;
     let mut effects: Vec<Arc<dyn Effect>> = vec![Arc::new(SecondOrder)];
     effects.extend(further);
     let mut parameters = vec![1.0 / T1, K / T1, rudder_bias, T2, T3];
@@ -163,7 +163,7 @@ mod tests {
         assert_relative_eq!(base.T(), 16.3, max_relative = 1e-14);
         assert_eq!(base.rudder_bias, 0.01);
         assert_eq!(ship.particulars, particulars);
-        let second = SecondOrderIndices { K: 0.1, T1: 20.0, T2: 2.5, T3: 6.2 };
+        let second = SecondOrderNomotoIndices { K: 0.1, T1: 20.0, T2: 2.5, T3: 6.2 };
         let ship = second_order(second, 0.0, None).expect("a ship");
         assert!(ship.first_order().is_none(), "a second-order ship has no exact K and T");
     }
@@ -178,7 +178,7 @@ mod tests {
             let error = first_order(K, T, 0.0, None).err().expect("beyond any ship");
             assert_eq!(error.to_string(), expected);
         }
-        let fast = SecondOrderIndices { K: 0.1, T1: 20.0, T2: 1e-9, T3: 0.0 };
+        let fast = SecondOrderNomotoIndices { K: 0.1, T1: 20.0, T2: 1e-9, T3: 0.0 };
         let error = second_order(fast, 0.0, None).err().expect("beyond any ship");
         assert!(matches!(error, ShipError::Range { symbol: "T2", .. }), "{error}");
     }
@@ -194,7 +194,7 @@ mod tests {
             assert_eq!(refused, symbol);
         }
         assert!(first_order(0.1, 16.3, 0.0, Some(Particulars { length: 0.0, speed: 8.0 })).is_err());
-        let unstable_twice = SecondOrderIndices { K: -0.1, T1: -20.0, T2: -2.5, T3: 6.2 };
+        let unstable_twice = SecondOrderNomotoIndices { K: -0.1, T1: -20.0, T2: -2.5, T3: 6.2 };
         assert!(second_order(unstable_twice, 0.0, None).is_err());
     }
 }

@@ -10,14 +10,14 @@
 //! Sources: Abkowitz (1964); Chislett and Strøm-Tejsen (1965).
 
 use super::{Hull, MIN_SPEED_SHARE};
-use crate::dynamics::Input;
-use crate::linear::PrimeSwayYaw;
+use crate::dynamics::ShipInput;
+use crate::linear::PrimeSwayYawMatrices;
 use crate::particulars::Particulars;
 
 /// Derivatives as printed in the source: prime, rudder positive to port, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y")]
-pub struct Derivatives {
+pub struct AbkowitzDerivatives {
     /// Mass m'.
     pub m: f64,
     /// Moment of inertia I_z' about midship.
@@ -84,19 +84,19 @@ impl LateralDerivatives {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Abkowitz {
     particulars: Particulars,
-    derivatives: Derivatives,
+    derivatives: AbkowitzDerivatives,
 }
 
 impl Abkowitz {
     /// Hull of this length whose derivatives were measured at this approach speed.
-    pub fn new(particulars: Particulars, derivatives: Derivatives) -> Self {
+    pub fn new(particulars: Particulars, derivatives: AbkowitzDerivatives) -> Self {
         Self { particulars, derivatives }
     }
 
     /// Linear equations of sway and yaw, rudder positive to starboard.
-    pub fn linearised(&self) -> PrimeSwayYaw {
+    pub fn linearised(&self) -> PrimeSwayYawMatrices {
         let p = &self.derivatives;
-        PrimeSwayYaw { M: self.mass(), N: [[-p.Y.v, -p.Y.r], [-p.N.v, -p.N.r]], b: [-p.Y.d, -p.N.d] }
+        PrimeSwayYawMatrices { M: self.mass(), N: [[-p.Y.v, -p.Y.r], [-p.N.v, -p.N.r]], b: [-p.Y.d, -p.N.d] }
     }
 
     fn mass(&self) -> [[f64; 2]; 2] {
@@ -113,7 +113,7 @@ impl Hull for Abkowitz {
     /// Accelerations from m' a' = F'(u', v', r', δ), a = a' U²/L (r' by U²/L²).
     ///
     /// The disturbance adds the yaw moment N_δ δ at approach speed. The polynomial was fitted near the approach speed.
-    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &Input) -> [f64; 3] {
+    fn acceleration(&self, [surge, sway, yaw]: [f64; 3], input: &ShipInput) -> [f64; 3] {
         let p = &self.derivatives;
         let Particulars { length: L, speed: U0 } = self.particulars;
         let U = surge.hypot(sway).max(MIN_SPEED_SHARE * U0);
@@ -126,7 +126,7 @@ impl Hull for Abkowitz {
             + p.Xrv * r * v
             + d * (p.Xdd * d + p.Xudd * u * d + p.Xvd * v + p.Xuvd * u * v);
         let Y = p.Y.at(u, v, r, d);
-        let N = p.N.at(u, v, r, d) - p.N.d * input.disturbance * (U0 / U) * (U0 / U);
+        let N = p.N.at(u, v, r, d) - p.N.d * input.disturbance_rudder * (U0 / U) * (U0 / U);
 
         let [[m11, m12], [m21, m22]] = self.mass();
         let det = m11 * m22 - m12 * m21;

@@ -24,8 +24,8 @@ use thiserror::Error;
 
 pub use self::parameters::{BySign, HullDerivatives, MmgParameters, Propeller, Rudder, Wake};
 use super::{Hull, MIN_SPEED_SHARE};
-use crate::dynamics::Input;
-use crate::linear::PrimeSwayYaw;
+use crate::dynamics::ShipInput;
+use crate::linear::PrimeSwayYawMatrices;
 use crate::particulars::Particulars;
 
 /// Error of parameters from which no hull can be made.
@@ -222,7 +222,7 @@ impl Mmg {
     ///
     /// Flow straightening has two slopes at zero angle; their mean is used, so the result describes neither side
     /// exactly.
-    pub fn linearised(&self) -> PrimeSwayYaw {
+    pub fn linearised(&self) -> PrimeSwayYawMatrices {
         let (hull, rudder) = (&self.parameters.hull, &self.parameters.rudder);
         let b = self.rudder_slopes();
         // α_R = δ + γ_R (v' + ℓ_R' r') U/u_R for small motion.
@@ -230,7 +230,7 @@ impl Mmg {
         let by_v = b.map(|slope| slope * straightening);
         let by_r = by_v.map(|slope| slope * rudder.lR);
         let [m11, m12, m22] = self.inertia;
-        PrimeSwayYaw {
+        PrimeSwayYawMatrices {
             M: [[m11, m12], [m12, m22]],
             N: [
                 [-(hull.Yv + by_v[0]), self.mass + hull.mx - (hull.Yr + by_r[0])],
@@ -279,8 +279,8 @@ impl Hull for Mmg {
 
     /// Accelerations by the equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight
     /// approach.
-    fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3] {
-        self.accelerations(velocity, input.rudder, 1.0, input.disturbance)
+    fn acceleration(&self, velocity: [f64; 3], input: &ShipInput) -> [f64; 3] {
+        self.accelerations(velocity, input.rudder, 1.0, input.disturbance_rudder)
     }
 }
 

@@ -14,7 +14,7 @@ pub mod prime;
 pub mod prior;
 pub mod scaled;
 
-use crate::dynamics::{Dynamics, Input, Motion};
+use crate::dynamics::{Dynamics, Motion, ShipInput};
 use crate::particulars::Particulars;
 
 /// Indices in the state vector of every hull.
@@ -51,7 +51,7 @@ pub trait Hull: Send + Sync {
 
     /// Accelerations (u', v', r'), m/s² and rad/s², in the rotating frame of the ship, at surge u, sway v to starboard
     /// (m/s) and yaw rate r (rad/s) at midship; finite for finite arguments.
-    fn acceleration(&self, velocity: [f64; 3], input: &Input) -> [f64; 3];
+    fn acceleration(&self, velocity: [f64; 3], input: &ShipInput) -> [f64; 3];
 }
 
 fn velocity(state: &[f64]) -> [f64; 3] {
@@ -71,7 +71,7 @@ impl<H: Hull> Dynamics for H {
         state[state::SURGE] = self.particulars().speed;
     }
 
-    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, _t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         let velocity @ [surge, sway, yaw_rate] = velocity(state);
         let (sin, cos) = state[state::HEADING].sin_cos();
         rate[state::HEADING] = yaw_rate;
@@ -80,7 +80,7 @@ impl<H: Hull> Dynamics for H {
         rate[state::EAST] = surge * sin + sway * cos;
     }
 
-    fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, _t: f64, state: &[f64], input: &ShipInput) -> Motion {
         let velocity @ [surge, sway, yaw_rate] = velocity(state);
         let [.., yaw_acceleration] = self.acceleration(velocity, input);
         let heading = state[state::HEADING];

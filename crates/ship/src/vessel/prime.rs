@@ -188,7 +188,7 @@ impl HullModel {
 
     /// MMG form with the priors of its coefficients.
     pub fn mmg(prior: &HullPrior) -> Self {
-        let by_key = |key: &&str| prior.coefficients.iter().find(|coefficient| coefficient.formula.key == *key);
+        let by_key = |key: &&str| prior.coefficient_priors.iter().find(|coefficient| coefficient.formula.key == *key);
         let free = FREE.iter().filter_map(by_key).map(|coefficient| HullCoefficient {
             key: coefficient.formula.key,
             symbol: coefficient.formula.symbol,
@@ -201,14 +201,14 @@ impl HullModel {
         let coefficients: Vec<HullCoefficient> = free.chain([bias]).collect();
         let variances =
             DVector::from_iterator(coefficients.len(), coefficients.iter().map(|prior| prior.sd * prior.sd));
-        let equations = FormEquations::Mmg(Box::new(prior.parameters.at_unit_length()));
+        let equations = FormEquations::Mmg(Box::new(prior.mean_parameters.at_unit_length()));
         Self { equations, coefficients, covariance: DMatrix::from_diagonal(&variances) }.with_windage(prior)
     }
 
     /// Form with the wind coefficient Y_w appended.
     fn with_windage(mut self, prior: &HullPrior) -> Self {
         let PolynomialTerm { key, symbol, bounds } = wind::WIND_COEFFICIENT;
-        let ([mean, sd], calm) = (wind::wind_coefficient_prior(&prior.parameters), self.coefficients.len());
+        let ([mean, sd], calm) = (wind::wind_coefficient_prior(&prior.mean_parameters), self.coefficients.len());
         self.covariance = self.covariance.resize(calm + 1, calm + 1, 0.0);
         self.covariance[(calm, calm)] = sd * sd;
         self.coefficients.push(HullCoefficient { key, symbol, mean, sd, bounds });

@@ -48,14 +48,14 @@ pub struct AssumedParticular {
 #[derive(Debug, Clone)]
 pub struct HullPrior {
     /// Parameters of the mean hull, for [`super::mmg::Mmg::at_speed`].
-    pub parameters: MmgParameters,
+    pub mean_parameters: MmgParameters,
     /// Priors of the coefficients.
-    pub coefficients: Vec<CoefficientPrior>,
+    pub coefficient_priors: Vec<CoefficientPrior>,
     /// Values assumed for particulars that were not given.
-    pub assumed: Vec<AssumedParticular>,
+    pub assumed_particulars: Vec<AssumedParticular>,
     /// Hulls one standard deviation above and below the mean, in every assumed ratio and in every coefficient by the
     /// error of its formula.
-    pub deviations: Vec<[MmgParameters; 2]>,
+    pub deviated_parameters: Vec<[MmgParameters; 2]>,
 }
 
 /// Prior of the hull with these particulars.
@@ -97,7 +97,12 @@ pub fn hull_prior(given: &HullParticulars) -> Result<HullPrior, ParticularsError
         let (value, missing) = (dimension(&form), particular.get(given).is_none() && particular.of_form.is_some());
         missing.then(|| AssumedParticular { key: particular.key, value, sd: variance(&dimension).sqrt(), formula })
     });
-    Ok(HullPrior { parameters, assumed: assumed.collect(), coefficients, deviations })
+    Ok(HullPrior {
+        mean_parameters: parameters,
+        assumed_particulars: assumed.collect(),
+        coefficient_priors: coefficients,
+        deviated_parameters: deviations,
+    })
 }
 
 /// Parameters with one coefficient replaced.

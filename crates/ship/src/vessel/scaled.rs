@@ -4,9 +4,9 @@ use estimation::number::{Dual, Real};
 use nalgebra::{Matrix3, Vector3};
 
 use super::prime::{PrimeHull, wind_accelerations};
-use crate::dynamics::{Dynamics, Input, Motion, Regressor};
+use crate::dynamics::{Dynamics, Motion, RegressorChannel, ShipInput};
 use crate::number::Tangent;
-use crate::replayable::{Replayable, ReplayedShip, TimeConstants};
+use crate::replayable::{Replayable, ReplayedShip, ResolvedTimeConstants};
 
 /// Number of steps in the ship-length time L/U₀.
 const STEPS: f64 = 25.0;
@@ -23,7 +23,7 @@ pub struct ScaledHull<R = f64> {
     /// Approach speed U₀, m/s.
     pub speed: f64,
     /// Propeller rate at that speed, 1/s; `None` if it is unknown.
-    pub propeller: Option<f64>,
+    pub propeller_rate: Option<f64>,
 }
 
 impl<R: Real> Dynamics<R> for ScaledHull<R> {
@@ -36,21 +36,21 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
         state.copy_from_slice(&[heading, yaw_rate, R::from(self.speed), R::from(0.0)]);
     }
 
-    fn rates(&self, _t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
+    fn rates(&self, _t: f64, state: &[R], input: &ShipInput<R>, rate: &mut [R]) {
         let Self { length, speed, .. } = *self;
         let measured = &input.measured;
         let wind = measured
             .wind_speed
             .zip(measured.wind_from)
             .map_or([0.0; 3], |(wind, from)| wind_accelerations(wind / speed, from));
-        let turning = measured.propeller.zip(self.propeller).map_or(1.0, |(now, approach)| now / approach);
+        let turning = measured.propeller_rate.zip(self.propeller_rate).map_or(1.0, |(now, approach)| now / approach);
         let prime = [state[2] / speed, state[3] / speed, state[1] * (length / speed)];
-        let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance, wind);
+        let [surge, sway, yaw] = self.hull.accelerations(prime, input.rudder, turning, input.disturbance_rudder, wind);
         let unit = speed * speed / length;
         rate.copy_from_slice(&[state[1], yaw * (unit / length), surge * unit, sway * unit]);
     }
 
-    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion {
+    fn motion(&self, t: f64, state: &[R], input: &ShipInput<R>) -> Motion {
         let mut rate = [R::from(0.0); 4];
         self.rates(t, state, input, &mut rate);
         let [heading, yaw_rate, surge, sway] = [0, 1, 2, 3].map(|place| state[place].value());
@@ -65,7 +65,7 @@ impl<R: Real> Dynamics<R> for ScaledHull<R> {
 
 impl<R: Real> Replayable<R> for ScaledHull<R> {
     /// Initial state with measured surge and sway, or with surge and sway of the approach.
-    fn initialise(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+    fn initialise(&self, heading: R, yaw_rate: R, input: &ShipInput<R>, state: &mut [R]) {
         let sway = input.measured.sway.unwrap_or(0.0);
         let surge = input.measured.speed.map_or(self.speed, |speed| (speed * speed - sway * sway).max(0.0).sqrt());
         state.copy_from_slice(&[heading, yaw_rate, R::from(surge), R::from(sway)]);
@@ -75,12 +75,12 @@ impl<R: Real> Replayable<R> for ScaledHull<R> {
         (state[0], state[1]) = (heading, yaw_rate);
     }
 
-    fn needs(&self, _channel: Regressor) -> bool {
+    fn needs(&self, _channel: RegressorChannel) -> bool {
         true
     }
 
-    fn time_constants(&self) -> TimeConstants {
-        TimeConstants::at_all_times(self.length / self.speed / STEPS)
+    fn time_constants(&self) -> ResolvedTimeConstants {
+        ResolvedTimeConstants::at_all_times(self.length / self.speed / STEPS)
     }
 }
 
@@ -131,7 +131,7 @@ impl ScaledHull {
 impl ReplayedShip for ScaledHull {
     fn tangent(&self) -> Box<dyn Replayable<Tangent>> {
         let hull = self.hull.to_real();
-        Box::new(ScaledHull { hull, length: self.length, speed: self.speed, propeller: self.propeller })
+        Box::new(ScaledHull { hull, length: self.length, speed: self.speed, propeller_rate: self.propeller_rate })
     }
 }
 
@@ -145,7 +145,7 @@ mod tests {
     use crate::vessel::prime::{CalmHull, HullModel};
 
     fn scaled(hull: PrimeHull) -> ScaledHull {
-        ScaledHull { hull, length: 320.0, speed: 7.97, propeller: None }
+        ScaledHull { hull, length: 320.0, speed: 7.97, propeller_rate: None }
     }
 
     /// Mean hull of the prior, and KVLCC2.
@@ -168,7 +168,7 @@ mod tests {
             hull.approach(0.0, 0.0, &mut state);
             let mut solver = RungeKutta4::new(4);
             for row in 0..4000 {
-                solver.step(&hull, f64::from(row), 1.0, &mut state, |_| Input { rudder, ..Input::default() });
+                solver.step(&hull, f64::from(row), 1.0, &mut state, |_| ShipInput { rudder, ..ShipInput::default() });
             }
             assert!((state[1] / rate - 1.0).abs() < 1e-4, "{} {rate} at {rudder}", state[1]);
         }

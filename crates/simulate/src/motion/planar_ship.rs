@@ -1,6 +1,6 @@
 //! Yaw response with speed and drift: a ship that can be simulated and has a track.
 
-use ship::{Dynamics, Input, MeasuredChannels, Motion, Replayable, Response};
+use ship::{Dynamics, MeasuredChannels, Motion, Replayable, Response, ShipInput};
 
 use super::planar::PlanarModel;
 
@@ -19,11 +19,11 @@ pub struct PlanarShip {
 
 impl PlanarShip {
     /// Number of states of the yaw response, and its input.
-    fn yaw_input(&self, state: &[f64], input: &Input) -> (usize, Input) {
+    fn yaw_input(&self, state: &[f64], input: &ShipInput) -> (usize, ShipInput) {
         let yaw_states = self.response.dimension();
         let [u, v] = [state[yaw_states], state[yaw_states + 1]];
         let measured = MeasuredChannels { speed: Some(u.hypot(v)), sway: Some(v), ..input.measured };
-        (yaw_states, Input { measured, ..*input })
+        (yaw_states, ShipInput { measured, ..*input })
     }
 }
 
@@ -38,22 +38,22 @@ impl Dynamics for PlanarShip {
         let (yaw, planar) = state.split_at_mut(yaw_states);
         planar.copy_from_slice(&[self.planar.approach_speed, 0.0]);
         let measured = MeasuredChannels { speed: Some(planar[0]), sway: Some(0.0), ..MeasuredChannels::default() };
-        self.response.initialise(heading, yaw_rate, &Input { measured, ..Input::default() }, yaw);
+        self.response.initialise(heading, yaw_rate, &ShipInput { measured, ..ShipInput::default() }, yaw);
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         let (yaw_states, seen) = self.yaw_input(state, input);
         self.response.rates(t, &state[..yaw_states], &seen, &mut rate[..yaw_states]);
         let [u, v] = [state[yaw_states], state[yaw_states + 1]];
         rate[yaw_states..].copy_from_slice(&self.planar.rates(u, v, state[1], input.rudder));
     }
 
-    fn update_memory(&self, t: f64, state: &mut [f64], input: &Input) {
+    fn update_memory(&self, t: f64, state: &mut [f64], input: &ShipInput) {
         let (yaw_states, seen) = self.yaw_input(state, input);
         self.response.update_memory(t, &mut state[..yaw_states], &seen);
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[f64], input: &ShipInput) -> Motion {
         let (yaw_states, seen) = self.yaw_input(state, input);
         let motion = self.response.motion(t, &state[..yaw_states], &seen);
         Motion { speed: seen.measured.speed, sway: seen.measured.sway, ..motion }

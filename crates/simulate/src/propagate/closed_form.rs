@@ -1,9 +1,9 @@
 //! Closed-form motion of a first-order ship: with rudder and moment linear in time, every step is exact.
 
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use ship::{FirstOrder, Motion};
 
-use crate::gear::{RudderMotion, RudderPath, Segment};
+use crate::gear::{RudderMotion, RudderPath, RudderSegment};
 use crate::propagate::propagator::{Propagator, RowLimits, acting_segment, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;
@@ -25,19 +25,19 @@ pub(crate) struct ClosedForm {
     ship: FirstOrder,
     weather: Weather,
     time: f64,
-    state: State,
-    candidate: State,
+    state: YawState,
+    candidate: YawState,
     cursor: usize,
     longest: f64,
     /// Transitions over the two most frequent steps: a row and a cell of the weather.
-    usual: [Transition; 2],
+    usual: [FirstOrderTransition; 2],
 }
 
 impl ClosedForm {
     /// Ship at time 0; `period` is the most frequent step, s.
-    pub fn new(ship: FirstOrder, weather: Weather, state: State, period: f64) -> Self {
+    pub fn new(ship: FirstOrder, weather: Weather, state: YawState, period: f64) -> Self {
         let longest = Self::longest_step(&ship);
-        let usual = [period, weather.cell().width].map(|h| Transition::new(ship.inverse_T, h));
+        let usual = [period, weather.cell().width].map(|h| FirstOrderTransition::new(ship.inverse_T, h));
         Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
     }
 
@@ -46,17 +46,17 @@ impl ClosedForm {
         MAX_STEP_S.min(MAX_STEP_OVER_T / ship.inverse_T.abs())
     }
 
-    fn transition(&self, h: f64) -> Transition {
+    fn transition(&self, h: f64) -> FirstOrderTransition {
         for usual in self.usual {
-            if (usual.h - h).abs() < STEP_TOLERANCE_S {
+            if (usual.time_step - h).abs() < STEP_TOLERANCE_S {
                 return usual;
             }
         }
-        Transition::new(self.ship.inverse_T, h)
+        FirstOrderTransition::new(self.ship.inverse_T, h)
     }
 
     /// Steering term b (δ + δ_r + disturbance) at the current time (rad/s²), and its slope (rad/s³).
-    fn steering(&self, segment: &Segment) -> (f64, f64) {
+    fn steering(&self, segment: &RudderSegment) -> (f64, f64) {
         let slope = match segment.motion {
             RudderMotion::Ramp { rate } => rate,
             // Exponentials do not occur: a gear with a lag is integrated.
@@ -69,14 +69,14 @@ impl ClosedForm {
 
     /// Sample at the current time, under the steering term `u0`, rad/s².
     fn sample_under(&self, u0: f64) -> Sample {
-        let State { heading, yaw_rate } = self.state;
+        let YawState { heading, yaw_rate } = self.state;
         let yaw_acceleration = u0 - self.ship.inverse_T * yaw_rate;
         let cell = self.weather.cell();
         Sample {
             time: self.time,
             motion: Motion { heading, yaw_rate, yaw_acceleration, speed: None, sway: None },
             gyro: heading,
-            disturbance: cell.moment(self.time),
+            disturbance_rudder: cell.moment(self.time),
             gust_factor: cell.gust_factor(self.time),
         }
     }
@@ -87,7 +87,7 @@ impl Propagator for ClosedForm {
         self.time
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> YawState {
         self.state
     }
 
@@ -110,7 +110,7 @@ impl Propagator for ClosedForm {
         if turn > 1e-9 && self.time + turn < to { self.time + turn } else { to }
     }
 
-    fn probe(&mut self, path: &RudderPath, h: f64) -> State {
+    fn probe(&mut self, path: &RudderPath, h: f64) -> YawState {
         let (u0, slope) = self.steering(&path.segments()[self.cursor]);
         self.candidate = self.transition(h).advance(self.state, u0, slope);
         self.candidate
@@ -138,7 +138,8 @@ impl Propagator for ClosedForm {
         let before = limits.before.min(segment.end);
         loop {
             let next = rows.next_time();
-            let usual = (next - self.time - step.h).abs() < STEP_TOLERANCE_S && next <= self.time + self.longest;
+            let usual =
+                (next - self.time - step.time_step).abs() < STEP_TOLERANCE_S && next <= self.time + self.longest;
             if !usual || next >= before {
                 return;
             }

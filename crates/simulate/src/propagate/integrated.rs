@@ -1,12 +1,12 @@
 //! Integrated motion of any ship, by Runge–Kutta steps that end at every corner of the acting rudder and of the
 //! weather.
 
-use ship::first_order::State;
+use ship::first_order::YawState;
 use ship::integrate::RungeKutta4;
-use ship::{Dynamics, Input};
+use ship::{Dynamics, ShipInput};
 
 use super::ship_in_weather::ShipInWeather;
-use crate::gear::{RudderPath, Segment};
+use crate::gear::{RudderPath, RudderSegment};
 use crate::propagate::propagator::{Propagator, acting_segment};
 use crate::sample::Sample;
 
@@ -22,13 +22,13 @@ pub(crate) struct Integrated<'a, D: ?Sized> {
 }
 
 /// Input at `t` within `segment`, with its smooth continuation at both ends.
-fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
-    Input { rudder: segment.angle_at(t - dead_time), ..Input::default() }
+fn input(segment: &RudderSegment, dead_time: f64, t: f64) -> ShipInput {
+    ShipInput { rudder: segment.angle_at(t - dead_time), ..ShipInput::default() }
 }
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
     /// Ship at time 0 on its approach; `step` is the maximum step, s; `None` for the maximum step of the ship.
-    pub fn new(ship: ShipInWeather<'a, D>, approach: State, step: Option<f64>) -> Self {
+    pub fn new(ship: ShipInWeather<'a, D>, approach: YawState, step: Option<f64>) -> Self {
         let dimension = ship.dimension();
         let mut state = vec![0.0; dimension];
         ship.approach(approach.heading, approach.yaw_rate, &mut state);
@@ -43,8 +43,8 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
         self.time
     }
 
-    fn state(&self) -> State {
-        State { heading: self.state[0], yaw_rate: self.state[1] }
+    fn state(&self) -> YawState {
+        YawState { heading: self.state[0], yaw_rate: self.state[1] }
     }
 
     fn stride(&mut self, path: &RudderPath, until: f64) -> f64 {
@@ -56,12 +56,12 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
         until.min(segment.end + dead_time).min(self.ship.weather.cell().end).min(self.time + self.step)
     }
 
-    fn probe(&mut self, path: &RudderPath, h: f64) -> State {
+    fn probe(&mut self, path: &RudderPath, h: f64) -> YawState {
         let segment = &path.segments()[self.cursor];
         let dead_time = self.ship.dead_time();
         self.candidate.copy_from_slice(&self.state);
         self.solver.step(&self.ship, self.time, h, &mut self.candidate, |t| input(segment, dead_time, t));
-        State { heading: self.candidate[0], yaw_rate: self.candidate[1] }
+        YawState { heading: self.candidate[0], yaw_rate: self.candidate[1] }
     }
 
     fn commit(&mut self, path: &RudderPath, to: f64) {
@@ -78,7 +78,7 @@ impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
             time: self.time,
             motion: self.ship.motion(self.time, &self.state, &input(segment, dead_time, self.time)),
             gyro: self.ship.gyro(&self.state),
-            disturbance: self.ship.disturbance(self.time, self.state[0]),
+            disturbance_rudder: self.ship.disturbance_rudder(self.time, self.state[0]),
             gust_factor: self.ship.weather.cell().gust_factor(self.time),
         }
     }

@@ -1,9 +1,9 @@
 //! Interface of a propagator, and event location: the instant within a step at which the heading reaches the angle of
 //! the next execute.
 
-use ship::first_order::State;
+use ship::first_order::YawState;
 
-use crate::gear::{RudderPath, Segment};
+use crate::gear::{RudderPath, RudderSegment};
 use crate::recording::Sampler;
 use crate::root;
 use crate::sample::Sample;
@@ -14,13 +14,13 @@ pub(crate) trait Propagator {
     fn time(&self) -> f64;
 
     /// Heading and yaw rate at the current time.
-    fn state(&self) -> State;
+    fn state(&self) -> YawState;
 
     /// End of the next smooth step, at most `until` and after the current time, s.
     fn stride(&mut self, path: &RudderPath, until: f64) -> f64;
 
     /// Trial state: heading and yaw rate `h` seconds ahead, within the last stride.
-    fn probe(&mut self, path: &RudderPath, h: f64) -> State;
+    fn probe(&mut self, path: &RudderPath, h: f64) -> YawState;
 
     /// Advances to the state of the last probe, at time `to`.
     fn commit(&mut self, path: &RudderPath, to: f64);
@@ -48,13 +48,18 @@ pub(crate) struct RowLimits {
 const MAX_DEVIATION_RAD: f64 = 100.0 * std::f64::consts::TAU;
 
 /// `true` if the motion has diverged from the base course (rad).
-pub(crate) fn has_diverged(state: State, base: f64) -> bool {
+pub(crate) fn has_diverged(state: YawState, base: f64) -> bool {
     let is_valid = state.yaw_rate.is_finite() && (state.heading - base).abs() < MAX_DEVIATION_RAD;
     !is_valid
 }
 
 /// Acting segment at time `t` after the dead time; `cursor` moves forward to it.
-pub(crate) fn acting_segment<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
+pub(crate) fn acting_segment<'a>(
+    path: &'a RudderPath,
+    cursor: &mut usize,
+    t: f64,
+    dead_time: f64,
+) -> &'a RudderSegment {
     let segments = path.segments();
     // Same sum as the end of a stride, so that a stride never has zero length.
     while segments[*cursor].end + dead_time <= t {
@@ -87,7 +92,13 @@ impl AwaitedHeading {
     ///
     /// The step leads from `from`, before the crossing, to `end` in `h` seconds. The yaw rate is monotone in the step,
     /// so the heading has at most one extremum, which is located when the yaw rate changes sign.
-    pub fn first_crossing(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
+    pub fn first_crossing(
+        &self,
+        from: YawState,
+        end: YawState,
+        h: f64,
+        mut probe: impl FnMut(f64) -> YawState,
+    ) -> Option<f64> {
         let before = (0.0, self.excess(from.heading));
         let mut after = (h, self.excess(end.heading));
         if after.1 < 0.0 && self.side * from.yaw_rate > 0.0 && self.side * end.yaw_rate < 0.0 {

@@ -1,6 +1,6 @@
 //! Ship in the weather with a lagging gyrocompass: the terms that depend on heading are part of the right-hand side.
 
-use ship::{Dynamics, Input, MeasuredChannels, Motion};
+use ship::{Dynamics, MeasuredChannels, Motion, ShipInput};
 
 use crate::disturbance::{Wind, gusting_speed};
 use crate::weather::{Weather, WeatherCell};
@@ -25,7 +25,7 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
     }
 
     /// Total disturbance as equivalent rudder angle, rad.
-    pub fn disturbance(&self, t: f64, heading: f64) -> f64 {
+    pub fn disturbance_rudder(&self, t: f64, heading: f64) -> f64 {
         let cell: &WeatherCell = self.weather.cell();
         cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust_factor(t)))
     }
@@ -35,8 +35,8 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
         if self.gyro_lag > 0.0 { state[self.ship.dimension()] } else { state[0] }
     }
 
-    fn acting(&self, t: f64, state: &[f64], input: &Input) -> Input {
-        let input = Input { disturbance: self.disturbance(t, state[0]), ..*input };
+    fn acting(&self, t: f64, state: &[f64], input: &ShipInput) -> ShipInput {
+        let input = ShipInput { disturbance_rudder: self.disturbance_rudder(t, state[0]), ..*input };
         match self.wind {
             Some(Wind { speed: Some(mean), .. }) => self.in_measured_wind(t, state, input, mean),
             _ => input,
@@ -44,13 +44,13 @@ impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
     }
 
     /// Input with the relative wind, for equations that use it.
-    fn in_measured_wind(&self, t: f64, state: &[f64], input: Input, mean: f64) -> Input {
+    fn in_measured_wind(&self, t: f64, state: &[f64], input: ShipInput, mean: f64) -> ShipInput {
         let ship_speed = self.ship.motion(t, &state[..self.ship.dimension()], &input).speed;
         let (Some(wind), Some(ship_speed)) = (self.wind, ship_speed.or(self.approach_speed)) else { return input };
         let speed = gusting_speed(mean, self.weather.cell().gust_factor(t));
         let (speed, from) = wind.relative_wind(speed, ship_speed, state[0]);
         let measured = MeasuredChannels { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
-        Input { measured, ..input }
+        ShipInput { measured, ..input }
     }
 }
 
@@ -66,7 +66,7 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
         gyro.fill(heading - self.gyro_lag * yaw_rate);
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         let states = self.ship.dimension();
         self.ship.rates(t, &state[..states], &self.acting(t, state, input), &mut rate[..states]);
         if self.gyro_lag > 0.0 {
@@ -74,12 +74,12 @@ impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
         }
     }
 
-    fn update_memory(&self, t: f64, state: &mut [f64], input: &Input) {
+    fn update_memory(&self, t: f64, state: &mut [f64], input: &ShipInput) {
         let acting = self.acting(t, state, input);
         self.ship.update_memory(t, &mut state[..self.ship.dimension()], &acting);
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[f64], input: &ShipInput) -> Motion {
         self.ship.motion(t, &state[..self.ship.dimension()], &self.acting(t, state, input))
     }
 

@@ -44,7 +44,7 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
 #[test]
 fn a_message_says_what_was_found_and_what_was_expected() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
-    simulation.recording.period = 0.0;
+    simulation.recording.sampling_period = 0.0;
     let message = failure(&simulation).to_string();
     assert_eq!(message, "recording.sampling-s is 0, expected a finite number above 0");
 }
@@ -96,7 +96,7 @@ fn a_run_that_takes_too_much_is_given_up() {
     };
     assert_eq!(given_up(&simulation), ("executes", MAX_EXECUTES));
     simulation.manoeuvre = Manoeuvre::zig_zag(0.1, 0.4).until_execute(12);
-    (simulation.recording.duration, simulation.recording.period) = (None, 1e-3);
+    (simulation.recording.duration, simulation.recording.sampling_period) = (None, 1e-3);
     assert_eq!(given_up(&simulation), ("rows", MAX_ROWS));
 }
 

@@ -2,7 +2,7 @@
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::{from_deg, to_deg};
-use ship::{Input, Particulars};
+use ship::{Particulars, ShipInput};
 use trial::{Channel, DeclaredWeather};
 
 use super::{KEY, TestShip, zig_zag};
@@ -102,7 +102,7 @@ fn gyro_lag_trails_the_heading() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 270.0);
     let lag = 0.8;
     simulation.sensors.heading_lag = lag;
-    simulation.recording.period = 0.05;
+    simulation.recording.sampling_period = 0.05;
     let SimulatedTrial { trial, truth } = run(&simulation);
     let trail: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(gyro, psi)| gyro - psi).collect();
     for row in 20..trail.len() - 1 {
@@ -110,13 +110,13 @@ fn gyro_lag_trails_the_heading() {
         assert_abs_diff_eq!(slope, -truth.yaw_rate[row] - trail[row] / lag, epsilon = 3e-6);
     }
     let exact = run(&zig_zag(10.0, 10.0, 2.5, 270.0)).truth;
-    assert_abs_diff_eq!(exact.executes[3].time, truth.executes[3].time, epsilon = 1e-8);
+    assert_abs_diff_eq!(exact.execute_orders[3].time, truth.execute_orders[3].time, epsilon = 1e-8);
 }
 
 #[test]
 fn a_delayed_heading_is_the_heading_of_then() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
-    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(0.0));
+    (simulation.recording.after_execute, simulation.recording.first_row_offset) = (Some(2), Some(0.0));
     let prompt = run(&simulation);
     simulation.sensors.heading_delay = 2.0;
     let late = run(&simulation);
@@ -141,7 +141,7 @@ fn a_delayed_heading_is_the_heading_of_then() {
 fn jitter_moves_heading_and_rudder_by_the_same_instants() {
     let mut simulation = zig_zag(20.0, 20.0, 2.5, 400.0);
     let jitter = 0.2;
-    simulation.sensors.jitter = jitter;
+    simulation.sensors.sampling_jitter = jitter;
     let SimulatedTrial { trial, truth } = run(&simulation);
     // Δψ = r j + r' j²/2, so that j can be computed while the ship turns.
     let (mut instants, mut agreeing) = (Vec::new(), 0);
@@ -217,12 +217,12 @@ fn a_display_shows_the_coloured_error() {
     let mut simulation = long();
     simulation.helmsman.reads_display_every = Some(1.0);
     // Rows between the readings.
-    (simulation.recording.period, simulation.recording.duration) = (0.5, Some(0.5 * (ROWS - 1.0)));
+    (simulation.recording.sampling_period, simulation.recording.duration) = (0.5, Some(0.5 * (ROWS - 1.0)));
     let calm = run(&simulation).truth;
     let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 20.0 };
     simulation.sensors.heading_wander = Some(wander);
     let SimulatedTrial { trial, truth } = run(&simulation);
-    assert_ne!(truth.executes, calm.executes);
+    assert_ne!(truth.execute_orders, calm.execute_orders);
     let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
     let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (_, sd) = statistics(&steps, &vec![0.0; steps.len()]);
@@ -293,11 +293,11 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
     simulation.sensors.heading_quantum = from_deg(0.1);
     let SimulatedTrial { trial, truth } = run(&simulation);
     let mut off = 0;
-    for execute in &truth.executes[1..] {
+    for execute in &truth.execute_orders[1..] {
         assert_eq!(execute.time, execute.time.round());
         let row = execute.time as usize;
         // The reading at the execute has reached the required heading, the reading before it has not.
-        let side = -execute.order.signum();
+        let side = -execute.ordered_rudder.signum();
         assert!(to_deg(side * trial.heading()[row]) >= 10.0 - 1e-6);
         assert!(to_deg(side * trial.heading()[row - 1]) < 10.0);
         off += usize::from((to_deg(side * execute.heading) - 10.0).abs() > 0.05);
@@ -307,7 +307,7 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
 
     simulation.helmsman.reaction_time = 0.6;
     let slow = run(&simulation).truth;
-    for execute in &slow.executes[1..] {
+    for execute in &slow.execute_orders[1..] {
         assert_abs_diff_eq!(execute.time - execute.time.floor(), 0.6, epsilon = 1e-9);
     }
 }
@@ -315,9 +315,9 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
 #[test]
 fn without_noise_a_display_only_delays_to_the_next_reading() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
-    let exact = run(&simulation).truth.executes[1].time;
+    let exact = run(&simulation).truth.execute_orders[1].time;
     simulation.helmsman.reads_display_every = Some(0.5);
-    let read = run(&simulation).truth.executes[1].time;
+    let read = run(&simulation).truth.execute_orders[1].time;
     assert_eq!(read, (exact / 0.5).ceil() * 0.5);
 }
 
@@ -341,17 +341,17 @@ fn waves_are_seen_but_do_not_steer() {
 #[test]
 fn wind_acts_by_heading_and_is_recorded() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 200.0);
-    let wind = Wind { moment: from_deg(1.0), from: from_deg(60.0), speed: Some(10.0), gusting: None };
+    let wind = Wind { moment: from_deg(1.0), from_direction: from_deg(60.0), speed: Some(10.0), gusting: None };
     simulation.disturbances.wind = Some(wind);
     simulation.ship = simulation.ship.with_particulars(Particulars { length: 105.0, speed: 8.0 });
     let SimulatedTrial { trial, truth } = run(&simulation);
-    for (psi, moment) in truth.heading.iter().zip(&truth.disturbance) {
-        assert_abs_diff_eq!(*moment, wind.moment * (2.0 * (wind.from - psi)).sin(), epsilon = 1e-15);
+    for (psi, moment) in truth.heading.iter().zip(&truth.disturbance_rudder) {
+        assert_abs_diff_eq!(*moment, wind.moment * (2.0 * (wind.from_direction - psi)).sin(), epsilon = 1e-15);
     }
     // r' + a r = b (δ + moment), row by row.
     let ship = super::training_ship();
     for row in 0..trial.len() {
-        let steering = truth.rudder[row] + truth.disturbance[row];
+        let steering = truth.rudder[row] + truth.disturbance_rudder[row];
         let expected = ship.K_over_T * steering - ship.inverse_T * truth.yaw_rate[row];
         assert_abs_diff_eq!(truth.yaw_acceleration[row], expected, epsilon = 1e-15);
     }
@@ -364,11 +364,11 @@ fn wind_acts_by_heading_and_is_recorded() {
 fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 60.0);
     // A ship with a weathervane moment: its yaw moment is proportional to the relative wind direction in the input.
-    let vane = |r: f64, input: &Input| 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * r;
+    let vane = |r: f64, input: &ShipInput| 1e-3 * input.measured.wind_from.unwrap_or(f64::NAN) - 0.05 * r;
     simulation.ship = TestShip::simulated(vane, |_| 6.0, 0.0);
     simulation.longest_wait = 1e3;
     let gusting = Some(Gusting { sd: 0.3, correlation_time: 5.0 });
-    simulation.disturbances.wind = Some(Wind { moment: 0.0, from: 1.5, speed: Some(9.0), gusting });
+    simulation.disturbances.wind = Some(Wind { moment: 0.0, from_direction: 1.5, speed: Some(9.0), gusting });
     let SimulatedTrial { trial, truth } = run(&simulation);
     let from = trial.channel(Channel::WindRelativeFrom).expect("speed of wind and ship are known");
     let rows = from.iter().zip(&truth.yaw_rate).zip(&truth.yaw_acceleration);
@@ -398,14 +398,14 @@ fn a_rudder_rebuilt_from_orders_is_as_right_as_its_rate() {
     };
     let rudder = |assumed_rate| {
         let simulated = recorded(assumed_rate).expect("a plain zig-zag");
-        (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.executes.clone())
+        (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.execute_orders.clone())
     };
     let (time, feedback, executes) = rudder(None);
-    let (_, same, _) = rudder(trial().gear.rate);
+    let (_, same, _) = rudder(trial().gear.rudder_rate);
     let (_, jumping, _) = rudder(Some(f64::INFINITY));
     for (row, &t) in time.iter().enumerate() {
         assert_abs_diff_eq!(same[row], feedback[row], epsilon = 1e-12);
-        let ordered = executes.iter().rfind(|execute| execute.time <= t).map_or(0.0, |execute| execute.order);
+        let ordered = executes.iter().rfind(|execute| execute.time <= t).map_or(0.0, |execute| execute.ordered_rudder);
         assert_abs_diff_eq!(jumping[row], ordered, epsilon = 1e-12);
     }
     assert!(jumping.iter().zip(&feedback).any(|(a, b)| (a - b).abs() > 0.05), "the ramps differ");

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use approx::assert_abs_diff_eq;
 use ship::angle::{from_deg, to_deg};
-use ship::{Input, Polyline};
+use ship::{Polyline, ShipInput};
 
 use super::{KEY, TestShip, training_ship, zig_zag};
 use crate::disturbance::{GaussMarkov, Gusting, Squall, WaveSpectrum, Wind};
@@ -17,8 +17,8 @@ use crate::{
 /// Ship with cubic damping and a dead time of the rudder.
 fn cubic(dead_time: f64) -> SimulatedShip {
     let base = training_ship();
-    let acceleration = move |r: f64, input: &Input| {
-        let steering = input.rudder + input.disturbance + base.rudder_bias;
+    let acceleration = move |r: f64, input: &ShipInput| {
+        let steering = input.rudder + input.disturbance_rudder + base.rudder_bias;
         -base.inverse_T * (r + 2000.0 * r * r * r) + base.K_over_T * steering
     };
     TestShip::simulated(acceleration, |r| 7.0 - 1e3 * r * r, dead_time)
@@ -29,8 +29,8 @@ fn truth(simulation: &Simulation) -> Arc<Truth> {
 }
 
 fn assert_same(left: &Truth, right: &Truth, tolerance: f64) {
-    assert_eq!(left.executes.len(), right.executes.len());
-    for (left, right) in left.executes.iter().zip(&right.executes) {
+    assert_eq!(left.execute_orders.len(), right.execute_orders.len());
+    for (left, right) in left.execute_orders.iter().zip(&right.execute_orders) {
         assert_abs_diff_eq!(left.time, right.time, epsilon = tolerance);
         assert_abs_diff_eq!(left.yaw_rate, right.yaw_rate, epsilon = tolerance);
     }
@@ -52,14 +52,14 @@ fn variety() -> Vec<Simulation> {
         list.push(zig_zag(delta_deg, psi_deg, rate, 270.0));
     }
     let mut anchored = list[0].clone();
-    (anchored.recording.after_execute, anchored.recording.offset) = (Some(2), Some(1.2));
-    anchored.approach.lead_in = 7.3;
+    (anchored.recording.after_execute, anchored.recording.first_row_offset) = (Some(2), Some(1.2));
+    anchored.approach.lead_in_time = 7.3;
     anchored.approach.heading = 1.0;
     anchored.gear.dead_time = 0.7;
     anchored.gear.dead_band = from_deg(0.3);
     list.push(anchored.clone());
-    anchored.disturbances.drift = from_deg(0.004);
-    anchored.disturbances.random_walk = from_deg(0.05);
+    anchored.disturbances.moment_drift = from_deg(0.004);
+    anchored.disturbances.moment_random_walk = from_deg(0.05);
     anchored.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.3), correlation_time: 10.0 });
     anchored.disturbances.squall = Some(Squall { start: 90.0, duration: 40.0, edge: 10.0, moment: from_deg(2.0) });
     anchored.helmsman.reaction_time = 0.4;
@@ -116,8 +116,8 @@ fn port_first_is_the_exact_mirror() {
         for (right, left) in starboard.heading.iter().zip(&port.heading) {
             assert_eq!(*right, -left);
         }
-        for (right, left) in starboard.executes.iter().zip(&port.executes) {
-            assert_eq!((right.time, right.order), (left.time, -left.order));
+        for (right, left) in starboard.execute_orders.iter().zip(&port.execute_orders) {
+            assert_eq!((right.time, right.ordered_rudder), (left.time, -left.ordered_rudder));
         }
     }
 }
@@ -128,14 +128,14 @@ fn runge_kutta_is_of_order_four_and_events_with_it() {
         let mut simulation = zig_zag(20.0, 20.0, 2.32, 200.0);
         simulation.ship = cubic(0.6);
         // Rows are coarser than the step; otherwise the rows would determine the step.
-        simulation.recording.period = 20.0;
+        simulation.recording.sampling_period = 20.0;
         truth(&Simulation { solver: Solver::RungeKutta(step), ..simulation })
     };
     let exact = with(0.02);
     let error = |step| {
         let rough = with(step);
         // The first crossing: later crossings also contain the steps shortened at earlier events.
-        let event = (rough.executes[1].time - exact.executes[1].time).abs();
+        let event = (rough.execute_orders[1].time - exact.execute_orders[1].time).abs();
         let heading = (rough.heading[10] - exact.heading[10]).abs();
         (event, heading)
     };
@@ -151,9 +151,9 @@ fn runge_kutta_is_of_order_four_and_events_with_it() {
 fn events_do_not_depend_on_step_or_sampling() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 280.0);
     let exact = truth(&simulation);
-    simulation.recording.period = 0.37;
+    simulation.recording.sampling_period = 0.37;
     let other = truth(&simulation);
-    for (left, right) in exact.executes.iter().zip(&other.executes) {
+    for (left, right) in exact.execute_orders.iter().zip(&other.execute_orders) {
         assert_abs_diff_eq!(left.time, right.time, epsilon = 1e-11);
         assert_abs_diff_eq!(to_deg(left.heading.abs()), if left.time > 0.0 { 10.0 } else { 0.0 }, epsilon = 1e-11);
     }
@@ -162,7 +162,7 @@ fn events_do_not_depend_on_step_or_sampling() {
         let solver = Solver::RungeKutta(step);
         truth(&Simulation { solver, ..simulation.clone() })
     });
-    for (left, right) in coarse.executes.iter().zip(&fine.executes) {
+    for (left, right) in coarse.execute_orders.iter().zip(&fine.execute_orders) {
         assert_abs_diff_eq!(left.time, right.time, epsilon = 1e-7);
     }
 }
@@ -184,7 +184,7 @@ fn a_late_rudder_is_the_same_motion_with_a_late_gear() {
 #[test]
 fn the_record_starts_after_the_execute_and_has_its_rows() {
     let mut simulation = zig_zag(10.0, 20.0, 2.5, 270.0);
-    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.2));
+    (simulation.recording.after_execute, simulation.recording.first_row_offset) = (Some(2), Some(1.2));
     let simulated = simulation.run(&KEY).expect("a zig-zag");
     assert_eq!(simulated.trial.len(), 271);
     assert_abs_diff_eq!(simulated.trial.time()[0], 36.31 + 1.2, epsilon = 0.01);
@@ -200,16 +200,16 @@ fn the_record_starts_after_the_execute_and_has_its_rows() {
 fn zig_zag_ends_at_its_execute_or_its_duration() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 1.0);
     simulation.recording.duration = None;
-    simulation.approach.lead_in = 10.0;
+    simulation.approach.lead_in_time = 10.0;
     let angle = from_deg(10.0);
     simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).until_execute(4);
     let by_executes = truth(&simulation);
-    assert_eq!(by_executes.executes.len(), 4);
+    assert_eq!(by_executes.execute_orders.len(), 4);
     assert_eq!(by_executes.time.last().copied(), Some(147.0));
     simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(200.0);
     let by_duration = truth(&simulation);
     assert_eq!(by_duration.time.last().copied(), Some(210.0));
-    assert_eq!(by_duration.executes[0].time, 10.0);
+    assert_eq!(by_duration.execute_orders[0].time, 10.0);
     assert_eq!(by_duration.heading[10], 0.0);
 }
 
@@ -220,9 +220,9 @@ fn a_turning_circle_ends_at_its_heading_and_a_pull_out_comes_to_rest() {
     let last = turn.heading[turn.heading.len() - 1];
     assert!(last > -9.0 && last < -9.0 + 0.07, "{last}");
     let pull_out = truth(&list[7]);
-    assert_eq!(pull_out.executes.len(), 2);
-    assert_eq!(pull_out.executes[1].time, 80.5);
-    assert_eq!(pull_out.executes[1].order, 0.0);
+    assert_eq!(pull_out.execute_orders.len(), 2);
+    assert_eq!(pull_out.execute_orders[1].time, 80.5);
+    assert_eq!(pull_out.execute_orders[1].ordered_rudder, 0.0);
     // 60 s are 3.7 time constants, minus the time of the rudder motion.
     let last = pull_out.yaw_rate.len() - 1;
     assert!(pull_out.yaw_rate[last] < 0.1 * pull_out.yaw_rate[80]);
@@ -244,7 +244,7 @@ fn noisy() -> Simulation {
     let mut simulation = variety().swap_remove(5);
     simulation.disturbances.wind = Some(Wind {
         moment: from_deg(1.0),
-        from: 1.0,
+        from_direction: 1.0,
         speed: Some(12.0),
         gusting: Some(Gusting { sd: 0.2, correlation_time: 8.0 }),
     });
@@ -252,7 +252,7 @@ fn noisy() -> Simulation {
     simulation.sensors = Sensors { heading_quantum: from_deg(0.1), ..spoilt() };
     simulation.sensors.yaw_rate_noise = Some(1e-3);
     simulation.sensors.rudder_noise = from_deg(0.2);
-    simulation.sensors.jitter = 0.1;
+    simulation.sensors.sampling_jitter = 0.1;
     simulation.sensors.drop_out.probability = 0.05;
     simulation.helmsman.reads_display_every = Some(1.0);
     simulation
@@ -291,8 +291,8 @@ fn going_on_without_looking_changes_nothing() {
 fn a_prepared_simulation_gives_the_same_bits() {
     let shaken: [fn(&mut Simulation); 11] = [
         |_| {},
-        |simulation| simulation.sensors = Sensors { jitter: 0.0, heading_delay: 0.0, ..noisy().sensors },
-        |simulation| simulation.sensors.jitter = 0.1,
+        |simulation| simulation.sensors = Sensors { sampling_jitter: 0.0, heading_delay: 0.0, ..noisy().sensors },
+        |simulation| simulation.sensors.sampling_jitter = 0.1,
         |simulation| simulation.sensors.heading_delay = 0.4,
         |simulation| simulation.disturbances.waves = noisy().disturbances.waves,
         |simulation| simulation.disturbances = noisy().disturbances,

@@ -7,7 +7,7 @@ mod invariance;
 use std::sync::Arc;
 
 use ship::angle::from_deg;
-use ship::{Dynamics, FirstOrder, Input, Motion};
+use ship::{Dynamics, FirstOrder, Motion, ShipInput};
 
 use crate::{Manoeuvre, SimulatedShip, Simulation, SteeringGear, StreamKey};
 
@@ -34,13 +34,13 @@ struct TestShip<F> {
     dead_time: f64,
 }
 
-impl<F: Fn(f64, &Input) -> f64 + Send + Sync + 'static> TestShip<F> {
+impl<F: Fn(f64, &ShipInput) -> f64 + Send + Sync + 'static> TestShip<F> {
     fn simulated(acceleration: F, speed: fn(f64) -> f64, dead_time: f64) -> SimulatedShip {
         SimulatedShip::from_dynamics(Arc::new(Self { acceleration, speed, dead_time }))
     }
 }
 
-impl<F: Fn(f64, &Input) -> f64 + Send + Sync> Dynamics for TestShip<F> {
+impl<F: Fn(f64, &ShipInput) -> f64 + Send + Sync> Dynamics for TestShip<F> {
     fn dimension(&self) -> usize {
         2
     }
@@ -49,11 +49,11 @@ impl<F: Fn(f64, &Input) -> f64 + Send + Sync> Dynamics for TestShip<F> {
         state.copy_from_slice(&[heading, yaw_rate]);
     }
 
-    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, _t: f64, state: &[f64], input: &ShipInput, rate: &mut [f64]) {
         rate.copy_from_slice(&[state[1], (self.acceleration)(state[1], input)]);
     }
 
-    fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, _t: f64, state: &[f64], input: &ShipInput) -> Motion {
         let yaw_acceleration = (self.acceleration)(state[1], input);
         let speed = Some((self.speed)(state[1]));
         Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed, sway: None }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use campaign::Observer;
-use campaign::benchmark::cases::Skipped;
+use campaign::benchmark::cases::SkippedRecord;
 use campaign::benchmark::{BenchDocument, BenchTask, embedded};
 use campaign::collect::collect;
 use campaign::failure::{Failure, OnPath};
@@ -168,13 +168,13 @@ pub fn write_results(
         false => format!("\n{}", bench_tables::naming_totals(results).to_text()),
     };
     let head = format!("{}\n", counted(results.cases.len() as u64, "question"));
-    let table = bench_tables::leaderboards(results);
-    let output = CommandOutput { frame: [&head, &naming], table: &table, notes: &notes, document: &text };
+    let table = bench_tables::joint_leaderboard_table(results);
+    let output = CommandOutput { texts_around_table: [&head, &naming], table: &table, notes: &notes, document: &text };
     screen::print_output(common, &output, &[] as &[&str])
 }
 
 /// One line on a record that was not used.
-pub fn skipped_record_line(record: &Skipped) -> String {
+pub fn skipped_record_line(record: &SkippedRecord) -> String {
     format!("{}, {}: {}", record.set, record.record, record.reason)
 }
 

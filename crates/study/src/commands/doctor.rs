@@ -31,8 +31,8 @@ pub fn run(common: &CommonOptions) -> Result<(), Failure> {
     let checks = [
         ("version", manifest::version()),
         ("machine", format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS)),
-        ("processors", threads::cores().to_string()),
-        ("threads", threads::count(common).to_string()),
+        ("processors", threads::core_count().to_string()),
+        ("threads", threads::thread_count(common).to_string()),
         ("instruction set", estimation::lanes::instruction_set().to_owned()),
         ("standard output", terminal(output.is_terminal(), screen::has_terminal_colours(&output)).to_owned()),
         ("standard error", terminal(errors.is_terminal(), screen::has_terminal_colours(&errors)).to_owned()),

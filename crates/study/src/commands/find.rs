@@ -37,7 +37,7 @@ pub fn find_answer(request: &FindRequest, warnings: &mut Warnings) -> Result<Fin
 
 fn entry(file: &Path, request: &FindRequest, warnings: &mut Warnings) -> Result<SearchedLog, Failure> {
     let log = open_log(file, request.columns.as_deref(), &request.with_columns, warnings)?;
-    Ok(SearchedLog::from_log(display_path(file), &log, &log.manoeuvres()))
+    Ok(SearchedLog::from_log(display_path(file), &log, &log.detected_manoeuvres()))
 }
 
 /// Prints the manoeuvres of every log.

@@ -58,12 +58,15 @@ pub fn write_results(
 ) -> Result<(), Failure> {
     curve_tables::write_replays(curves, folder)?;
     write_page(folder, fit_page::page(document, curves), theme)?;
-    let notes =
-        format!("{}\nresults: {}", fit_page::below_table(document, curves), folder.path().join(FIT_FILE).display());
-    let verdict = fit_page::verdict(document).map_or_else(String::new, |sentences| format!("{sentences}\n\n"));
-    let head = format!("{verdict}{}\n", fit_page::headline(document, curves));
-    let table = fit_page::answers(document, curves);
-    let output = CommandOutput { frame: [&head, ""], table: &table, notes: &notes, document: text };
+    let notes = format!(
+        "{}\nresults: {}",
+        fit_page::text_below_table(document, curves),
+        folder.path().join(FIT_FILE).display()
+    );
+    let verdict = fit_page::fit_verdict(document).map_or_else(String::new, |sentences| format!("{sentences}\n\n"));
+    let head = format!("{verdict}{}\n", fit_page::fit_headline(document, curves));
+    let table = fit_page::answer_table(document, curves);
+    let output = CommandOutput { texts_around_table: [&head, ""], table: &table, notes: &notes, document: text };
     screen::print_output(common, &output, &shortened(document.verdict_warnings()))
 }
 

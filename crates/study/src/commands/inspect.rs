@@ -7,7 +7,7 @@ use document::{Warning, WarningCode, Warnings};
 use report::number::{MISSING, fixed, optional, significant};
 use report::{Table, TableHead};
 use trial::file::display_path;
-use trial::{Log, ReadError};
+use trial::{InstrumentLog, ReadError};
 
 use crate::documents;
 use crate::documents::inspect::{ChannelEntry, InspectAnswer};
@@ -43,12 +43,17 @@ pub fn run(request: &InspectRequest, common: &CommonOptions) -> Result<(), Failu
     let LogEntry { file, rows, duration_s, .. } = &answer.log;
     let before = format!("{file}: {rows} rows, {} s\n", fixed(*duration_s, 1));
     let text = documents::answer_text(&answer)?;
-    let output = CommandOutput { frame: [&before, ""], table: &table(&answer.channels), notes: "", document: &text };
+    let output = CommandOutput {
+        texts_around_table: [&before, ""],
+        table: &table(&answer.channels),
+        notes: "",
+        document: &text,
+    };
     screen::print_output(common, &output, &answer.warnings)
 }
 
 /// Warnings of the log when it is read as a single record; if it cannot be read so, a single warning with the reason.
-fn doubts(log: Log) -> Vec<Warning> {
+fn doubts(log: InstrumentLog) -> Vec<Warning> {
     let refused =
         |problem: String| vec![WarningCode::Implausible.warning(format!("not usable as one record: {problem}"))];
     match log.into_trial(None) {

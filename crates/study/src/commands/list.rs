@@ -18,7 +18,7 @@ use trial::names::{self, ColumnMeaning};
 use trial::sidecar::{self, Sidecar, SidecarKey};
 
 use campaign::failure::Failure;
-use campaign::scenario::keys::{ScenarioKey, keys as keys_of_scenario};
+use campaign::scenario::keys::{ScenarioKey, scenario_keys as keys_of_scenario};
 
 /// Arguments of `study list`.
 #[derive(Debug, Clone, Args)]
@@ -92,10 +92,10 @@ fn keys(settings: &IdentifierSettings) -> String {
 fn effects() -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["id", "form", "keys in a scenario", "equation", "parameters"]));
-    for effect in effects::all() {
+    for effect in effects::all_effects() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let numbers = effect.scenario_numbers();
+        let numbers = effect.scenario_keys();
         let keys = numbers.map(|numbers| numbers.iter().map(|entry| entry.key).collect::<Vec<_>>().join(", "));
         let keys = keys.unwrap_or_else(|| MISSING.to_owned());
         table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
@@ -106,7 +106,7 @@ fn effects() -> Table {
 fn ships() -> Table {
     let head = TableHead::default().texts(["id", "ship"]).numbers(["L"]).unit("m").numbers(["V"]).unit("kn");
     let mut table = Table::new(head.texts(["source"]));
-    for ship in ships::all() {
+    for ship in ships::all_ships() {
         let number = |value: Option<f64>| report::number::optional(value, 1);
         table.push([
             ship.id.to_string(),
@@ -155,7 +155,7 @@ fn keys_by_table() -> String {
             format!("`[[{}]]`", name.trim_end_matches("[]"))
         }
         name if is_in_table(&name) => format!("`[{name}]`"),
-        _ => "Outside of tables".to_owned(),
+        _ => "Before the first table".to_owned(),
     };
     let section = |keys: &[ScenarioKey]| {
         let table = Format::Markdown.render(&key_table("", keys));
@@ -168,7 +168,8 @@ fn keys_by_table() -> String {
 fn columns() -> Table {
     let mut table = Table::new(TableHead::default().texts(["holds", "names", "understood as well"]));
     let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
-        let names: Vec<&str> = names::names().filter(|(_, meaning)| wanted(*meaning)).map(|(name, _)| name).collect();
+        let names: Vec<&str> =
+            names::known_column_names().filter(|(_, meaning)| wanted(*meaning)).map(|(name, _)| name).collect();
         names.join(", ")
     };
     let time = usual(&|meaning| matches!(meaning, ColumnMeaning::Time(_)));
@@ -192,7 +193,7 @@ fn columns() -> Table {
 
 fn sidecar() -> Table {
     let mut table = Table::new(TableHead::default().texts(["key", "value", "meaning"]));
-    for SidecarKey { key, value_kind, meaning } in sidecar::keys() {
+    for SidecarKey { key, value_kind, meaning } in sidecar::sidecar_keys() {
         table.push([&key, &value_kind, &meaning.replace('`', "")]);
     }
     table
@@ -218,11 +219,11 @@ fn priors(ListRequest { columns, ship, .. }: &ListRequest) -> Result<Table, Fail
     let mut table =
         Table::new(TableHead::default().texts(["key", "symbol"]).numbers(["mean", "sd"]).texts(["formula", "source"]));
     let digits = |value: f64| report::number::significant(value, 3);
-    for AssumedParticular { key, value, sd, formula } in prior.assumed {
+    for AssumedParticular { key, value, sd, formula } in prior.assumed_particulars {
         let symbol = Particular::find(key).map_or("", |particular| particular.symbol);
         table.push([key, symbol, &digits(value), &digits(sd), &formula, prior::RATIO_SOURCE]);
     }
-    for coefficient in &prior.coefficients {
+    for coefficient in &prior.coefficient_priors {
         let CoefficientFormula { key, symbol, text, source, .. } = *coefficient.formula;
         table.push([key, symbol, &digits(coefficient.mean), &digits(coefficient.sd), text, source]);
     }

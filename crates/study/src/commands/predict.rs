@@ -47,9 +47,10 @@ pub fn run(request: &PredictRequest, common: &CommonOptions) -> Result<(), Failu
     let columns = request.columns.as_deref().filter(|path| records.is_empty() && path.is_file());
     let declared = columns.map(Sidecar::load).transpose().map_err(Failure::input)?;
     let file = columns.map(|path| path.display().to_string());
-    let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
+    let declared_conditions = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
     let earlier = EarlierModel::from_files(&request.priors)?;
-    let input = PredictInput { models: &models, earlier: &earlier, ballast: &ballast, records, current, declared };
+    let (models, earlier_models, ballast_models) = (&models, &earlier, &ballast);
+    let input = PredictInput { models, earlier_models, ballast_models, records, current, declared_conditions };
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::make(&place)?;
     let text = documents::write_with_curves(&folder, PREDICT_FILE, &predicted, &predicted.curves())?;
@@ -70,7 +71,7 @@ pub fn write_results(
     common: &CommonOptions,
     warnings: &[Warning],
 ) -> Result<(), Failure> {
-    for (stem, table) in predict_curves::curves(predicted) {
+    for (stem, table) in predict_curves::curve_tables(predicted) {
         folder.write(&format!("{stem}.csv"), table)?;
     }
     write_page(folder, predict_page::page(predicted), theme)?;
@@ -79,9 +80,9 @@ pub fn write_results(
         folder.write(FORM, predict_form::page(form, remarks).to_markdown())?;
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
-    let [before, behind] = [predict_page::summary(predicted), predict_page::below_table(predicted)];
+    let [before, behind] = [predict_page::text_above_table(predicted), predict_page::text_below_table(predicted)];
     let table = predict_tables::characteristics_table(predicted);
-    let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
+    let output = CommandOutput { texts_around_table: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::print_output(common, &output, warnings)
 }
 

@@ -7,7 +7,7 @@ use campaign::failure::Failure;
 use campaign::files::MANIFEST_FILE;
 use campaign::folder::ResultFolder;
 use campaign::scenario::Scenario;
-use campaign::shard::default_folder;
+use campaign::shard::default_result_folder;
 
 use super::reply;
 use crate::documents::answers::ShardAnswer;
@@ -27,7 +27,7 @@ pub fn run(path: &Path, request: &RunRequest, common: &CommonOptions) -> Result<
         ));
     }
     let theme = request.style.style.theme()?;
-    let place = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name));
+    let place = common.out.clone().unwrap_or_else(|| default_result_folder(&scenario.name));
     let folder = ResultFolder::make(&folder_for(MANIFEST_FILE, &place)?)?;
     let terminal = Terminal::new("trials", common.quiet);
     let Some(shard) = request.shard else {

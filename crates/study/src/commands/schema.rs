@@ -46,7 +46,7 @@ pub fn run(&SchemaRequest { what }: &SchemaRequest, _: &CommonOptions) -> Result
 pub fn schema(what: SchemaSubject) -> Schema {
     match what {
         SchemaSubject::Scenario => campaign::scenario::schema::schema(),
-        SchemaSubject::Sidecar => trial::sidecar::schema(),
+        SchemaSubject::Sidecar => trial::sidecar::sidecar_schema(),
         SchemaSubject::Fit => of::<FitDocument>(),
         SchemaSubject::Trace => of::<TraceDocument>(),
         SchemaSubject::Predict => of::<PredictDocument>(),

@@ -8,7 +8,7 @@ use campaign::folder::ResultFolder;
 use campaign::outside_estimates::{self, TRIALS_FILE, TrialsDocument};
 use campaign::scenario::Scenario;
 use campaign::scenario::name;
-use campaign::shard::default_folder;
+use campaign::shard::default_result_folder;
 use clap::Args;
 use trial::file::{self, FileKind};
 
@@ -48,7 +48,7 @@ pub fn run(request: &ScoreRequest, common: &CommonOptions) -> Result<(), Failure
     let theme = request.style.style.theme()?;
     let terminal = Terminal::new("trials", common.quiet);
     let label = request.label.clone().map_or_else(|| name::study_name(&request.answers), Ok)?;
-    let place = default_folder(&format!("{}-score", scenario.name));
+    let place = default_result_folder(&format!("{}-score", scenario.name));
     let answers = outside_estimates::read(&request.answers, &scenario, &terminal)?.into_iter();
     let add = |scenario: Scenario, (method, answers): (Option<String>, _)| {
         scenario.with_outside_estimates(method.as_deref().unwrap_or(&label), answers)

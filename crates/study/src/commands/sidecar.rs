@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use clap::Args;
-use trial::file::STDIN;
+use trial::file::STDIN_PATH;
 use trial::{Sidecar, reader};
 
 use super::reply;
@@ -25,15 +25,15 @@ pub struct SidecarRequest {
 ///
 /// Fails if the table cannot be read, or if it already has a description.
 pub fn run(SidecarRequest { log }: &SidecarRequest, common: &CommonOptions) -> Result<(), Failure> {
-    if log == Path::new(STDIN) {
+    if log == Path::new(STDIN_PATH) {
         // Standard input has no folder for the description.
         return tell(&reader::draft_sidecar(log).map_err(Failure::input)?, None, common);
     }
     let path = match &common.out {
-        Some(folder) => folder.join(Sidecar::beside(log).file_name().unwrap_or_default()),
-        None => Sidecar::beside(log),
+        Some(folder) => folder.join(Sidecar::path_beside(log).file_name().unwrap_or_default()),
+        None => Sidecar::path_beside(log),
     };
-    if disk::is_there(&path).on("look for", &path)? {
+    if disk::path_exists(&path).on("look for", &path)? {
         return Err(Failure::in_file(
             &path,
             "this description is there already; remove it, or write another one elsewhere with `--out DIR`",
@@ -52,7 +52,7 @@ fn tell(text: &str, written: Option<(&Path, &Path)>, common: &CommonOptions) -> 
     let line = match written {
         None => text.trim_end().to_owned(),
         Some((path, log)) => {
-            let is_found = path == Sidecar::beside(log);
+            let is_found = path == Sidecar::path_beside(log);
             let columns = if is_found { String::new() } else { format!(" --columns {}", path.display()) };
             format!("{}: check every line, then run `study fit {}{columns}`", path.display(), log.display())
         }

@@ -16,7 +16,7 @@ use super::reply;
 use crate::documents::answers::SimulateAnswer;
 use crate::options::{CommonOptions, SimulateRequest};
 use crate::progress;
-use crate::views::page_files::run_all;
+use crate::views::page_files::run_all_in_parallel;
 use crate::work::simulate::{RecordFiles, requested_trials, simulate_record_files};
 
 /// Simulates the requested trials and writes them, with the true values of each.
@@ -45,7 +45,7 @@ pub fn run(request: &SimulateRequest, common: &CommonOptions) -> Result<(), Fail
     };
     let bar = progress::bar("records", tasks.len() as u64, common.quiet);
     let work = tasks.par_iter().zip(&names).progress_with(bar);
-    run_all(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
+    run_all_in_parallel(work.map(|(task, name)| write(&scenario, *task, name, &folder)))?;
     if !is_file {
         list(&scenario, &tasks, &names, &folder)?;
     }
@@ -78,12 +78,12 @@ const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials 
 
 /// Writes the records of a trial, the sidecar of each record that needs one, and the true values.
 fn write(scenario: &Scenario, task: TrialId, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    for RecordFiles { name, table, sidecar, truth } in simulate_record_files(scenario, task, name)? {
-        folder.write(&format!("{name}.csv"), table)?;
-        if let Some(sidecar) = sidecar {
+    for RecordFiles { name, record_csv, sidecar_toml, truth_json } in simulate_record_files(scenario, task, name)? {
+        folder.write(&format!("{name}.csv"), record_csv)?;
+        if let Some(sidecar) = sidecar_toml {
             folder.write(&format!("{name}.trial.toml"), sidecar)?;
         }
-        folder.write(&format!("{name}.truth.json"), truth)?;
+        folder.write(&format!("{name}.truth.json"), truth_json)?;
     }
     Ok(())
 }

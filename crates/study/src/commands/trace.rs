@@ -56,8 +56,8 @@ pub fn write_results(
 ) -> Result<(), Failure> {
     write_page(folder, trace_page::page(document, curves, steady::steady_turns(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", folder.path().join(TRACE_FILE).display());
-    let [before, behind] = trace_page::around_table(document);
-    let table = trace_page::all_errors(document);
-    let output = CommandOutput { frame: [&before, &behind], table: &table, notes: &notes, document: text };
+    let [before, behind] = trace_page::texts_around_table(document);
+    let table = trace_page::all_replay_errors_table(document);
+    let output = CommandOutput { texts_around_table: [&before, &behind], table: &table, notes: &notes, document: text };
     screen::print_output(common, &output, warnings)
 }

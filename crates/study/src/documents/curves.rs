@@ -26,7 +26,7 @@ pub struct TracedRecord {
     /// Replays of the recorded rudder by the base and by the average of the structures.
     pub replays: [Replay; 2],
     /// Half width of the 95 % band of the second replay at its rows, rad; `None` if the table has no band.
-    pub band: Option<Vec<f64>>,
+    pub half_width95: Option<Vec<f64>>,
     /// Times, s, of the innovations of the most probable structure, and the innovations in standard deviations; `None`
     /// for a held-out record.
     pub innovations: Option<[Vec<f64>; 2]>,
@@ -37,27 +37,27 @@ pub struct TraceCurves {
     /// Records in the order of the document.
     pub records: Vec<TracedRecord>,
     /// Tables of the missing moments, in the order of the document: over time, and over the channels.
-    pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
+    pub moment_tables: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
     /// Times, s, as a single column, and the heading residual of the first record, deg, a column for every step of the
     /// staircase; both empty without a staircase.
-    pub staircase: [Vec<Vec<f64>>; 2],
+    pub staircase_residuals: [Vec<Vec<f64>>; 2],
 }
 
 /// Unique slugs of record names for file names; equal slugs are numbered.
-pub fn slugs(record_names: &[String]) -> Vec<String> {
+pub fn record_slugs(record_names: &[String]) -> Vec<String> {
     unique_names(record_names.iter().map(|name| slug(name)))
 }
 
 /// File name suffix of the record with the index `number`: empty for the first.
-pub fn suffix(names: &[String], number: usize) -> String {
-    if number == 0 { String::new() } else { format!("-{}", slugs(names)[number]) }
+pub fn file_name_suffix(names: &[String], number: usize) -> String {
+    if number == 0 { String::new() } else { format!("-{}", record_slugs(names)[number]) }
 }
 
 /// Column prefixes of the base and of the average of the structures.
 const MODELS: [&str; 2] = ["before", "after"];
 
 /// CSV table of a record and its replays by the base and by the average of the structures; angles in degrees.
-pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
+pub fn record_csv(trial: &Trial, comparison: &RecordComparison) -> String {
     let mut columns = CsvColumns::default();
     columns.push("t_s", trial.time().to_vec());
     columns.push("heading_deg", degrees(trial.heading()));
@@ -68,14 +68,14 @@ pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
     // A replay begins at the first recorded heading.
     let first = trial.observed_rows().next().unwrap_or(0);
     let rows = |values: &[f64]| [vec![f64::NAN; first], degrees(values)].concat();
-    for (model, on) in MODELS.iter().zip([&comparison.before, &comparison.after]) {
+    for (model, on) in MODELS.iter().zip([&comparison.base_replay, &comparison.average_replay]) {
         let Replay { heading, yaw_rate, residual, .. } = &on.replay;
         let quantities = [("heading_deg", heading), ("yaw_rate_deg_s", yaw_rate), ("residual_deg", residual)];
         for (quantity, values) in quantities {
             columns.push(format!("{model}_{quantity}"), rows(values));
         }
     }
-    if let Some(band) = &comparison.after.band {
+    if let Some(band) = &comparison.average_replay.band_half_width {
         columns.push("after_half_width95_deg", rows(band));
     }
     columns.to_csv()
@@ -91,26 +91,26 @@ fn column_of(step: usize) -> String {
 
 /// Document entries of the steps from the base to the model, and file name and CSV text of the table of the residuals
 /// of the first record after each step. Empty and `None` without a staircase.
-pub fn staircase(path: Option<InclusionPath>) -> (Vec<InclusionStepEntry>, Option<(String, String)>) {
+pub fn staircase_entries_and_csv(path: Option<InclusionPath>) -> (Vec<InclusionStepEntry>, Option<(String, String)>) {
     let Some(path) = path else { return (Vec::new(), None) };
     let mut columns = CsvColumns::default();
-    columns.push("t_s", path.time);
+    columns.push("t_s", path.row_times);
     for (number, step) in path.steps.iter().enumerate() {
-        columns.push(column_of(number), degrees(&step.residual));
+        columns.push(column_of(number), degrees(&step.heading_residual));
     }
     let entry = |step: &InclusionStep| InclusionStepEntry {
         id: step.term.map(|(id, ..)| id.to_owned()),
         form: step.term.map(|(_, form, _)| form.to_owned()),
-        heading_rmse_deg: to_deg(step.rmse),
+        heading_rmse_deg: to_deg(step.heading_rmse),
     };
     (path.steps.iter().map(entry).collect(), Some((STAIRCASE.to_owned(), columns.to_csv())))
 }
 
-/// Names of the columns of [`innovations`].
+/// Names of the columns of [`innovations_csv`].
 const INNOVATIONS: [&str; 2] = ["t_s", "innovation_sd"];
 
 /// CSV table of the innovations of a record.
-pub fn innovations(series: &Innovations) -> String {
+pub fn innovations_csv(series: &Innovations) -> String {
     let mut columns = CsvColumns::default();
     for (name, values) in INNOVATIONS.into_iter().zip([&series.time, &series.values]) {
         columns.push(name, values.clone());
@@ -118,7 +118,7 @@ pub fn innovations(series: &Innovations) -> String {
     columns.to_csv()
 }
 
-/// Record read from a table; `None` if the table does not have the form of [`table`].
+/// Record read from a table; `None` if the table does not have the form of [`record_csv`].
 fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     let columns = CsvColumns::from_csv(text)?;
     let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
@@ -142,10 +142,10 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
         })
     };
     let replays = [replay(MODELS[0])?, replay(MODELS[1])?];
-    let band = rows(String::from("after_half_width95_deg"));
+    let half_width95 = rows(String::from("after_half_width95_deg"));
     let origin = RecordOrigin::Measured { file: entry.file.clone(), sha256: String::new() };
-    let trial = Trial::new(&entry.name, origin, Channels { time, channels, unknown: Vec::new() }).ok()?;
-    Some(TracedRecord { trial, replays, band, innovations: None })
+    let trial = Trial::new(&entry.name, origin, Channels { time, channels, unknown_columns: Vec::new() }).ok()?;
+    Some(TracedRecord { trial, replays, half_width95, innovations: None })
 }
 
 /// Content of a table of a trace. Fails if the table has another form; `place` is its path in messages.
@@ -183,9 +183,9 @@ impl TraceCurves {
             let innovations = entry.innovations.as_ref().map(numbers).transpose()?;
             Ok(TracedRecord { innovations, ..record })
         });
-        let moments =
+        let moment_tables =
             document.missing_moment.iter().map(|entry| Ok([columns(&entry.moment)?, columns(&entry.curves)?]));
-        let staircase = match document.staircase.len() {
+        let staircase_residuals = match document.staircase.len() {
             0 => Default::default(),
             steps => {
                 let table = columns(STAIRCASE)?;
@@ -194,9 +194,9 @@ impl TraceCurves {
             }
         };
         Ok(Self {
-            staircase,
+            staircase_residuals,
             records: records.collect::<Result<_, Failure>>()?,
-            moments: moments.collect::<Result<_, Failure>>()?,
+            moment_tables: moment_tables.collect::<Result<_, Failure>>()?,
         })
     }
 }

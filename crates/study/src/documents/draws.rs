@@ -18,14 +18,14 @@ fn columns(predicted: &PredictDocument) -> Vec<(String, ColumnValues)> {
     let numbers = |pick: fn(&DrawnParameters) -> Option<f64>| ColumnValues::Numbers(drawn.iter().map(pick).collect());
     let texts =
         |pick: &dyn Fn(&DrawnParameters) -> Option<String>| ColumnValues::Texts(drawn.iter().map(pick).collect());
-    let file = |draw: &DrawnParameters| predicted.models.get(draw.file).map(|model| model.file.clone());
+    let file = |draw: &DrawnParameters| predicted.models.get(draw.file_index).map(|model| model.file.clone());
     let parameters = parameter_columns(drawn.iter().map(|ship| &ship.parameters[..]).collect());
     let figures = predicted.manoeuvres.iter().flat_map(|manoeuvre| {
         let name = move |figure: &String| format!("figure.{}.{figure}", manoeuvre.kind);
         manoeuvre
             .figures
             .iter()
-            .map(move |(figure, values)| (name(figure), ColumnValues::Numbers(values.draws.clone())))
+            .map(move |(figure, values)| (name(figure), ColumnValues::Numbers(values.drawn_values.clone())))
     });
     [
         ("draw", ColumnValues::Counts((0..drawn.len() as i64).map(Some).collect())),

@@ -6,7 +6,7 @@ use document::Warning;
 use schemars::JsonSchema;
 use serde::Serialize;
 use ship::angle::to_deg;
-use trial::Log;
+use trial::InstrumentLog;
 use trial::find::DetectedManoeuvre;
 
 use super::answers::CommandAnswer;
@@ -60,17 +60,17 @@ pub struct ManoeuvreEntry {
 
 impl SearchedLog {
     /// Entry of a log with its manoeuvres.
-    pub fn from_log(file: &Path, log: &Log, manoeuvres: &[DetectedManoeuvre]) -> Self {
+    pub fn from_log(file: &Path, log: &InstrumentLog, manoeuvres: &[DetectedManoeuvre]) -> Self {
         let clock = |time: f64| log.clock.map(|clock| clock.time_of_day_at(time).to_string());
         let manoeuvre = |(trial, manoeuvre): (usize, &DetectedManoeuvre)| {
             let [rudder_deg, heading_deg] = manoeuvre.angles().map(|angle| angle.map(to_deg));
             ManoeuvreEntry {
                 trial,
                 kind: manoeuvre.name(),
-                from_s: manoeuvre.from,
-                until_s: manoeuvre.until,
-                clock: clock(manoeuvre.from).zip(clock(manoeuvre.until)).map(|(from, until)| [from, until]),
-                executes: manoeuvre.executes,
+                from_s: manoeuvre.start_time,
+                until_s: manoeuvre.end_time,
+                clock: clock(manoeuvre.start_time).zip(clock(manoeuvre.end_time)).map(|(from, until)| [from, until]),
+                executes: manoeuvre.execute_count,
                 rudder_deg,
                 heading_deg,
                 remarks: manoeuvre.quality.remarks(),

@@ -38,8 +38,8 @@ pub struct FitRecord {
     /// Rudder angle.
     pub rudder: PlotCurve,
     /// Track of a turning circle, east and north in ship lengths from the execute; north is the approach course.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub circle: Option<PlotCurve>,
+    #[serde(default, skip_serializing_if = "Option::is_none", rename = "circle")]
+    pub circle_track: Option<PlotCurve>,
     /// Headings and rudder angles that are excluded or doubtful, if there are any.
     pub rejected: Option<[PlotCurve; 2]>,
 }

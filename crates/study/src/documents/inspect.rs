@@ -6,7 +6,7 @@ use document::{Warning, names};
 use schemars::JsonSchema;
 use serde::Serialize;
 use trial::reader::ChannelInspection;
-use trial::{Channel, Log};
+use trial::{Channel, InstrumentLog};
 
 use super::answers::CommandAnswer;
 use super::log::LogEntry;
@@ -71,30 +71,31 @@ impl From<&ChannelInspection> for ChannelEntry {
         let shown = |value: f64| value / unit.si_factor();
         let side = |to_starboard: bool| if to_starboard { "starboard" } else { "port" };
         let spoken = |channel: Channel| names::with_blanks(channel.label());
-        let gap = readings.longest_gap.filter(|[_, way]| readings.interval.is_none_or(|usual| *way > MIN_GAP * usual));
+        let gap =
+            readings.longest_gap.filter(|[_, way]| readings.median_interval.is_none_or(|usual| *way > MIN_GAP * usual));
         Self {
             channel: spoken(readings.channel),
             source: readings.source.clone(),
-            readings: readings.count,
-            interval_s: readings.interval,
+            readings: readings.reading_count,
+            interval_s: readings.median_interval,
             longest_gap_s: gap.map(|[_, way]| way),
             longest_gap_from_s: gap.map(|[begin, _]| begin),
             unit: unit.id().to_owned(),
-            lowest: shown(readings.range[0]),
-            highest: shown(readings.range[1]),
+            lowest: shown(readings.value_range[0]),
+            highest: shown(readings.value_range[1]),
             step: readings.smallest_change.map(shown),
-            wraps: readings.wraps,
+            wraps: readings.north_crossings,
             turns_to: to_starboard.map(|to_starboard| side(to_starboard).to_owned()),
             reference: relation.map(|relation| spoken(relation.reference)),
-            scale: relation.map(|relation| relation.scale),
-            lag_s: relation.and_then(|relation| relation.lag),
+            scale: relation.map(|relation| relation.factor_to_reference),
+            lag_s: relation.and_then(|relation| relation.lag_behind_reference),
         }
     }
 }
 
 impl InspectAnswer {
     /// Entry of a log with its warnings.
-    pub fn from_log(file: &Path, log: &Log, warnings: Vec<Warning>) -> Self {
+    pub fn from_log(file: &Path, log: &InstrumentLog, warnings: Vec<Warning>) -> Self {
         Self {
             log: LogEntry::from_log(file, log),
             channels: log.inspect().iter().map(ChannelEntry::from).collect(),

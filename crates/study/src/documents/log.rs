@@ -4,7 +4,7 @@ use std::path::Path;
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use trial::Log;
+use trial::InstrumentLog;
 
 /// Entry of a log.
 #[derive(Serialize, JsonSchema)]
@@ -21,7 +21,7 @@ pub struct LogEntry {
 
 impl LogEntry {
     /// Entry of the log of a file.
-    pub fn from_log(file: &Path, log: &Log) -> Self {
+    pub fn from_log(file: &Path, log: &InstrumentLog) -> Self {
         let time = log.time();
         let ends = time.first().zip(time.last());
         Self {

@@ -15,7 +15,7 @@ const MIN_SHIFT_SD: f64 = 1.0;
 const NOT_NEAR: &str = "no hull close to it reproduces the records";
 
 /// Sentence on the models of earlier trials and on whether the records agree with them, for screen and page.
-pub fn sentence(earlier: &EarlierTrials) -> String {
+pub fn earlier_trials_sentence(earlier: &EarlierTrials) -> String {
     let model = |model: &PriorModelEntry| {
         let ship = match model.likeness {
             Likeness::SameShip => String::from("the same ship"),
@@ -36,7 +36,7 @@ pub fn sentence(earlier: &EarlierTrials) -> String {
 }
 
 /// Warning of a conflict between records and models; `None` if they agree.
-pub fn warning(earlier: &EarlierTrials) -> Option<Warning> {
+pub fn contradiction_warning(earlier: &EarlierTrials) -> Option<Warning> {
     earlier.conflict.then(|| WarningCode::EarlierTrials.warning(contradiction(earlier)))
 }
 

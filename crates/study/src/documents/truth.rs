@@ -77,7 +77,7 @@ impl TrueIndices {
 /// True values of one record of a trial.
 ///
 /// Fails if the sampled values of the trial make no ship.
-pub fn truth(
+pub fn truth_document(
     scenario: &Scenario,
     task: TrialId,
     simulated: &SimulatedTrial,
@@ -94,9 +94,9 @@ pub fn truth(
         replicate: task.replicate,
         nearest: truths.nearest.map(TrueIndices::from_response),
         base: truths.base.map(TrueIndices::from_response),
-        missing: trial_spec.specification.missing.clone(),
-        drawn: scenario.draws.iter().cloned().zip(trial_spec.drawn.iter().copied()).collect(),
-        executes_s: truth.executes.iter().map(|execute| execute.time).collect(),
+        missing: trial_spec.specification.missing_effects.clone(),
+        drawn: scenario.drawn_keys.iter().cloned().zip(trial_spec.drawn.iter().copied()).collect(),
+        executes_s: truth.execute_orders.iter().map(|execute| execute.time).collect(),
         motion: TrueMotion {
             t_s: truth.time.clone(),
             heading_deg: degrees(&truth.heading),

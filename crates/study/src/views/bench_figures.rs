@@ -3,12 +3,14 @@
 use campaign::benchmark::board::{Leaderboard, LeaderboardRow};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use campaign::scenario::name::slug;
-use campaign::scenario::{STRAIGHT_ON, TRACE};
-use campaign::statistics::{MIN_SUMMARISED_VALUES, grouped};
-use report::figures::{AxisSpec, NamedRows, Reference95, RowItem, RowKind, RowsColumn, TickRule};
+use campaign::scenario::{STRAIGHT_ON_ID, TRACE_ID};
+use campaign::statistics::{MIN_SUMMARISED_VALUES, distinct};
+use report::figures::{AxisSpec, NamedRows, ReferenceBand95, RowItem, RowKind, RowsColumn, TickRule};
+use report::number::counted;
 use report::palette::CurveStyle;
 use report::{CurveOrigin, PageFigure};
 
+use super::key_figure::TRACE_REMARK;
 use super::key_rows::tint;
 
 /// Maximum ratio of a score to that of the reference; a larger one is shown as an arrow.
@@ -48,9 +50,9 @@ pub fn figures(results: &BenchDocument) -> Vec<PageFigure> {
 fn curve_origin(method: &str) -> CurveOrigin {
     match method {
         // The straight-on forecast is not a method: grey.
-        STRAIGHT_ON => CurveOrigin::Series { label: method.to_owned(), number: 2 },
-        method if method != TRACE && method.starts_with(TRACE) => {
-            CurveOrigin::Variant { label: method.to_owned(), method: TRACE.to_owned(), number: 0 }
+        STRAIGHT_ON_ID => CurveOrigin::Series { label: method.to_owned(), number: 2 },
+        method if method != TRACE_ID && method.starts_with(TRACE_ID) => {
+            CurveOrigin::Variant { label: method.to_owned(), method: TRACE_ID.to_owned(), number: 0 }
         }
         method => CurveOrigin::Method(method.to_owned()),
     }
@@ -77,18 +79,26 @@ fn winners(board: &Leaderboard) -> impl Iterator<Item = &str> {
     board.standings.iter().filter(is_better).map(|standing| standing.method.as_str())
 }
 
-/// Finding: the methods that are significantly better than the reference, with the tasks.
+/// Number of boards on which a method is significantly better than the reference.
+fn won_count(boards: &[&Leaderboard], method: &str) -> usize {
+    boards.iter().filter(|board| winners(board).any(|winner| winner == method)).count()
+}
+
+/// Finding: the methods that are significantly better than the reference in most tasks.
 fn finding(boards: &[&Leaderboard], reference: &str) -> String {
-    let of_task = |board: &Leaderboard| winners(board).collect::<Vec<_>>().join(" and ");
-    let won = grouped(boards.iter().filter(|board| !of_task(board).is_empty()), |board| of_task(board));
-    let won = won.iter().map(|(methods, boards)| {
-        let tasks: Vec<&str> = boards.iter().map(|board| axis_title(board.task)).collect();
-        format!("{methods} ({})", tasks.join(", "))
-    });
-    match won.collect::<Vec<_>>()[..] {
-        [] => format!("no method clearly beats {reference}"),
-        ref some => format!("{reference} is clearly beaten by {}", some.join(", ")),
-    }
+    let methods = distinct(boards.iter().flat_map(|board| winners(board)));
+    let Some(most) = methods.iter().map(|method| won_count(boards, method)).max() else {
+        return format!("no method clearly beats {reference}");
+    };
+    let (best, others): (Vec<&str>, Vec<&str>) =
+        methods.into_iter().partition(|method| won_count(boards, method) == most);
+    let verb = if best.len() > 1 { "beat" } else { "beats" };
+    let others = match others.len() {
+        0 => String::new(),
+        count => format!(", {} in fewer", counted(count as u64, "other method")),
+    };
+    let tasks = counted(boards.len() as u64, "task");
+    format!("{} clearly {verb} {reference} in {most} of {tasks}{others}", best.join(" and "))
 }
 
 /// Columns whose axes have the same range.
@@ -100,17 +110,35 @@ fn share_scale(mut columns: Vec<RowsColumn>) -> Vec<RowsColumn> {
     columns
 }
 
+/// Remark under a figure of score ratios.
+fn ratio_note(boards: &[&Leaderboard], reference: &str) -> String {
+    let score = match boards.iter().any(|board| board.task == BenchTask::Indices) {
+        true => "rms heading error; for K and T the larger relative error",
+        false => "rms heading error",
+    };
+    let mut note = format!(
+        "Axes: score over that of {reference}, medians over n cases; left of the line a method is better than {reference}. \
+         Score: {score}. Intervals need six independent records. {TRACE_REMARK}"
+    );
+    if boards.iter().any(|board| board.cases < MIN_SUMMARISED_VALUES) {
+        note += &format!(
+            " Hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; near values are drawn above each other."
+        );
+    }
+    note
+}
+
 fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.study == study).collect();
     let mut rivals: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     // The methods of the finding are on top, in full colour.
-    let is_winner = |method: &str| boards.iter().any(|board| winners(board).any(|winner| winner == method));
-    rivals.sort_by_key(|method| !is_winner(method));
-    let is_plain = !rivals.iter().any(|method| is_winner(method));
+    let won = |method: &str| won_count(&boards, method);
+    let most = rivals.iter().map(|method| won(method)).max().unwrap_or(0);
+    rivals.sort_by_key(|method| most - won(method));
     let style = |method: &str| {
         let style = curve_origin(method).style();
-        let colour = if is_plain || is_winner(method) { style.colour } else { tint(style.colour) };
-        CurveStyle { colour, hollow: false, ..style }
+        let colour = if won(method) == most { style.colour } else { tint(style.colour) };
+        CurveStyle { colour, is_hollow: false, ..style }
     };
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
     if rivals.is_empty() || !has_ratios {
@@ -120,7 +148,7 @@ fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
         let points = |method: &str| -> Vec<RowItem> {
             let cases = results.cases.iter().filter(|case| case.task == board.task && case.study == board.study);
             let ratios = cases.filter_map(|case| case.score_ratio(method, &results.reference));
-            let style = CurveStyle { hollow: true, ..style(method) };
+            let style = CurveStyle { is_hollow: true, ..style(method) };
             ratios.map(|ratio| RowItem::new("", RowKind::Mark(style, ratio.max(f64::MIN_POSITIVE), None))).collect()
         };
         let row = |method: &&String| {
@@ -136,27 +164,19 @@ fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
         };
         RowsColumn {
             x: AxisSpec::new(
-                format!("score ratio, {} (n = {})", axis_title(board.task), board.cases),
+                // Unbreakable, so that the number stays on one line.
+                format!("{} (n\u{a0}=\u{a0}{})", axis_title(board.task), board.cases),
                 TickRule::Logarithmic,
             ),
-            reference: Some(Reference95::without_band(1.0)),
+            reference: Some(ReferenceBand95::line_at(1.0)),
             rows: rivals.iter().map(row).collect(),
             ..RowsColumn::default()
         }
     };
-    let score = match boards.iter().any(|board| board.task == BenchTask::Indices) {
-        true => "rms heading error; for K and T the larger relative error",
-        false => "rms heading error",
-    };
     Some(NamedRows {
         names: rivals.iter().map(|method| (*method).clone()).collect(),
         columns: share_scale(boards.iter().map(column).collect()),
-        note: Some(format!(
-            "Score: {score}. Left of the line a method is better than {}. Medians over the cases; hollow: single cases if \
-             fewer than {MIN_SUMMARISED_VALUES}. Near values are drawn above each other. Intervals need six independent \
-             records.",
-            results.reference
-        )),
+        note: Some(ratio_note(&boards, &results.reference)),
         ..NamedRows::default()
     })
 }

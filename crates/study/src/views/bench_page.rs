@@ -9,7 +9,7 @@ use campaign::benchmark::{BenchDocument, BenchTask};
 
 use campaign::scenario::name::slug;
 use campaign::statistics::{MIN_INTERVAL_VALUES, grouped};
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::{Page, PlacedFigures};
 
 use super::bench_figures::{capital, figures};

@@ -1,8 +1,8 @@
 //! Tables of a benchmark: leaderboards, sets, and single answers.
 
-use campaign::benchmark::board::{Leaderboard, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
+use campaign::benchmark::board::{Leaderboard, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, set_lines};
 use campaign::benchmark::cases::{BenchCase, Naming};
-use campaign::benchmark::naming::{NamingLine, total};
+use campaign::benchmark::naming::{NamingLine, naming_total};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
 use report::{Table, TableHead};
@@ -73,7 +73,7 @@ fn cells(standing: &LeaderboardRow, indices: bool) -> Vec<String> {
 }
 
 /// Table of one leaderboard.
-pub fn leaderboard(results: &BenchDocument, board: &Leaderboard) -> Table {
+pub fn leaderboard_table(results: &BenchDocument, board: &Leaderboard) -> Table {
     let indices = board.task == BenchTask::Indices;
     let mut table = Table::new(columns(TableHead::default().texts(["method"]), &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
@@ -81,7 +81,7 @@ pub fn leaderboard(results: &BenchDocument, board: &Leaderboard) -> Table {
 }
 
 /// All leaderboards in one table, for a person.
-pub fn leaderboards(results: &BenchDocument) -> Table {
+pub fn joint_leaderboard_table(results: &BenchDocument) -> Table {
     let first = TableHead::default().texts(["task", "records"]).counts(["n"]).texts(["method"]);
     let mut table = Table::new(columns(first, &results.reference, true));
     for board in &results.boards {
@@ -125,9 +125,9 @@ fn median(set_median: Option<(f64, usize)>) -> String {
 }
 
 /// Medians of every set, methods side by side.
-pub fn sets(results: &BenchDocument) -> Table {
+pub fn set_median_table(results: &BenchDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["task", "set"]).counts(["n"]).numbers(&results.methods));
-    for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
+    for SetLine { task, set, cases, methods } in set_lines(&results.cases, &results.methods) {
         let head = [task.id().to_owned(), set, cases.to_string()];
         table.push(head.into_iter().chain(methods.into_iter().map(median)));
     }
@@ -141,7 +141,7 @@ pub fn method_medians(results: &BenchDocument, method: &str) -> Table {
     let reference = place(&results.reference).filter(|_| method != results.reference);
     let mut table = Table::new(head.numbers(reference.map(|_| format!("median of {}", results.reference))));
     let Some(column) = place(method) else { return table };
-    for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
+    for SetLine { task, set, cases, methods } in set_lines(&results.cases, &results.methods) {
         let Some((_, failed)) = methods[column] else { continue };
         let line = [task.id().to_owned(), set, cases.to_string(), median(methods[column]), count(failed)];
         table.push(line.into_iter().chain(reference.map(|place| median(methods[place]))));
@@ -150,7 +150,7 @@ pub fn method_medians(results: &BenchDocument, method: &str) -> Table {
 }
 
 /// Rows of one method on every leaderboard.
-pub fn standings_of(results: &BenchDocument, method: &str) -> Table {
+pub fn standings_table(results: &BenchDocument, method: &str) -> Table {
     let mut table = Table::new(columns(TableHead::default().texts(["task"]).counts(["n"]), &results.reference, true));
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, standing)| standing.method == method) {
@@ -178,19 +178,20 @@ fn naming_table<'a>(first: &str, lines: impl Iterator<Item = (&'a str, NamingLin
 pub fn naming_totals(results: &BenchDocument) -> Table {
     let kinds = [(true, "that lack one effect"), (false, "that lack nothing")];
     let all = results.methods.iter().flat_map(|method| kinds.map(|(is_missing, ships)| (method, is_missing, ships)));
-    let line =
-        |(method, is_missing, ships): (&String, bool, _)| Some((ships, total(&results.naming, method, is_missing)?));
+    let line = |(method, is_missing, ships): (&String, bool, _)| {
+        Some((ships, naming_total(&results.naming, method, is_missing)?))
+    };
     naming_table("ships", all.filter_map(line))
 }
 
 /// Outcomes of naming the missing effect, set by set, for one method or all.
-pub fn naming(results: &BenchDocument, method: Option<&str>) -> Table {
+pub fn naming_table_by_set(results: &BenchDocument, method: Option<&str>) -> Table {
     let lines = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
     naming_table("set", lines.map(|line| (line.set.as_str(), line.clone())))
 }
 
 /// Ranking over all predictions.
-pub fn overall(results: &BenchDocument) -> Table {
+pub fn overall_ranking_table(results: &BenchDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["method"]).numbers(["mean rank"]).texts(["95 %"]));
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
         table.push([method.clone(), value(*rank), ends(*rank)]);

@@ -14,7 +14,7 @@ pub const LEGEND: &str = "The size of an effect at which the trace names it (its
                            share named at the largest size.";
 
 /// One row for every effect with sizes, called by its `name`, at every point of the other axes.
-pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
+pub fn blind_spots_table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String) -> Table {
     let of_sizes = effect_size_axis(design);
     let other_axes = design.axes.iter().enumerate().filter(|(axis, _)| Some(*axis) != of_sizes);
     let several = has_several_traces(design);
@@ -29,7 +29,7 @@ pub fn table(spots: &[BlindSpot], design: &Design, name: impl Fn(&str) -> String
             size if size < smallest => format!("less than {smallest}"),
             size => significant(size, 3),
         };
-        let at_largest = spot.counts.iter().filter(|trial| trial.size == largest);
+        let at_largest = spot.counts.iter().filter(|trial| trial.effect_size == largest);
         let [named, total] =
             at_largest.fold([0, 0], |[named, total], size| [named + size.detections, total + size.trials]);
         let mut cells = vec![name(&spot.effect)];

@@ -1,16 +1,16 @@
 //! Figures of a summary over the axes of a study: choice of axis and panels, and what is omitted.
 
-use campaign::scenario::TRACE;
+use campaign::scenario::TRACE_ID;
 use report::figures::{
-    AxisLine, AxisSpec, Layer, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, Plot, Reference95, RowItem,
-    RowKind, RowsColumn, TickRule,
+    AxisLine, AxisSpec, Layer, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, Plot, ReferenceBand95,
+    RowItem, RowKind, RowsColumn, TickRule,
 };
 use report::{CurveOrigin, PlotCurve};
 
 use campaign::curves;
 use campaign::design::{CellFacts, Design};
 use campaign::statistics::{Statistic, grouped};
-use campaign::summary::{Performance, Summary};
+use campaign::summary::{MethodPerformance, Summary};
 
 /// Quantity of a chart over the axes of a design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub enum ErrorMeasure {
     /// Root mean square errors of K and T.
     Rms,
     /// Root mean square errors of K and T relative to the Cramér–Rao bound.
-    OverBound,
+    RatioToBound,
     /// Coverage and width of the intervals of K and T.
     Coverage,
     /// Trials without an estimate.
@@ -29,13 +29,13 @@ pub enum ErrorMeasure {
 
 impl ErrorMeasure {
     /// All measures in the order of the report.
-    pub const ALL: [Self; 5] = [Self::Rms, Self::OverBound, Self::Validation, Self::Coverage, Self::Failures];
+    pub const ALL: [Self; 5] = [Self::Rms, Self::RatioToBound, Self::Validation, Self::Coverage, Self::Failures];
 
     /// File stem of the figure.
     pub fn stem(self) -> &'static str {
         match self {
             Self::Rms => "errors",
-            Self::OverBound => "errors-over-bound",
+            Self::RatioToBound => "errors-over-bound",
             Self::Coverage => "coverage",
             Self::Failures => "failures",
             Self::Validation => "validation",
@@ -44,7 +44,7 @@ impl ErrorMeasure {
 
     fn panels(self) -> usize {
         match self {
-            Self::Rms | Self::OverBound => 2,
+            Self::Rms | Self::RatioToBound => 2,
             Self::Coverage => 4,
             Self::Failures | Self::Validation => 1,
         }
@@ -52,19 +52,19 @@ impl ErrorMeasure {
 
     fn ruler(self, panel: usize, title: String) -> AxisSpec {
         let is_log =
-            matches!(self, Self::Rms | Self::OverBound | Self::Validation) || self == Self::Coverage && panel > 1;
+            matches!(self, Self::Rms | Self::RatioToBound | Self::Validation) || self == Self::Coverage && panel > 1;
         AxisSpec::new(title, if is_log { TickRule::Logarithmic } else { TickRule::Decimal })
     }
 
     /// Statistic of a panel, in per cent, for the validation in degrees; `None` if the method has none. Panels are
     /// counted from 0; those with an even number are of K, those with an odd number of T.
-    pub fn statistic(self, performance: &Performance, panel: usize) -> Option<Statistic> {
+    pub fn statistic(self, performance: &MethodPerformance, panel: usize) -> Option<Statistic> {
         let errors = if panel.is_multiple_of(2) { &performance.k } else { &performance.t };
         match self {
-            Self::Rms | Self::OverBound => errors.rms,
+            Self::Rms | Self::RatioToBound => errors.rms,
             // A few estimates with an interval do not characterise a method.
             Self::Coverage => {
-                let often = errors.interval_share.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
+                let often = errors.share_with_interval.is_some_and(|share| share.value >= MIN_QUOTING_SHARE);
                 let figure = if panel > 1 {
                     errors.median_interval_width
                 } else {
@@ -79,12 +79,12 @@ impl ErrorMeasure {
 
     /// `true` if the measure is an error of K and T.
     fn is_of_errors(self) -> bool {
-        matches!(self, Self::Rms | Self::OverBound)
+        matches!(self, Self::Rms | Self::RatioToBound)
     }
 
     /// Nominal coverage, 95 %, for the two panels of coverage; `None` for every other panel.
-    fn reference(self, panel: usize) -> Option<Reference95> {
-        (self == Self::Coverage && panel < 2).then(|| Reference95::without_band(95.0))
+    fn reference(self, panel: usize) -> Option<ReferenceBand95> {
+        (self == Self::Coverage && panel < 2).then(|| ReferenceBand95::line_at(95.0))
     }
 }
 
@@ -113,7 +113,7 @@ pub fn comparable_methods<'a>(
     measure: ErrorMeasure,
     mut cells: impl Iterator<Item = &'a CellFacts>,
 ) -> Option<(Vec<usize>, bool)> {
-    let is_trace = |method: &usize| design.methods[*method].id == TRACE;
+    let is_trace = |method: &usize| design.methods[*method].id == TRACE_ID;
     let of_indices = measure.is_of_errors() || measure == ErrorMeasure::Coverage;
     let is_nearest = of_indices && cells.any(|cell| cell.is_compared_with_nearest);
     let mut methods: Vec<usize> = (0..design.methods.len()).collect();
@@ -149,8 +149,8 @@ impl<'a> ComparedMethods<'a> {
     fn new(design: &'a Design, summary: &'a Summary, measure: ErrorMeasure, groups: &[ChartGroup]) -> Option<Self> {
         let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
         let (mut methods, to_nearest) = comparable_methods(design, measure, cells())?;
-        let is_bounded = cells().all(|cell| cell.bound_percent2.is_some() && !cell.is_compared_with_nearest);
-        if measure == ErrorMeasure::OverBound && !is_bounded {
+        let is_bounded = cells().all(|cell| cell.cramer_rao_percent2.is_some() && !cell.is_compared_with_nearest);
+        if measure == ErrorMeasure::RatioToBound && !is_bounded {
             return None;
         }
         if measure == ErrorMeasure::Failures {
@@ -163,10 +163,10 @@ impl<'a> ComparedMethods<'a> {
     fn titles(&self) -> Vec<String> {
         let of_both = |pattern: &str| ["K", "T"].map(|symbol| pattern.replace('#', symbol));
         match self.measure {
-            ErrorMeasure::OverBound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
+            ErrorMeasure::RatioToBound => of_both("rms error of # / Cramér–Rao bound").to_vec(),
             ErrorMeasure::Rms => ["K", "T"].map(|symbol| rms_title(symbol, self.to_nearest)).to_vec(),
             ErrorMeasure::Coverage => {
-                [of_both("95 % intervals that hold # [%]"), of_both("median width for # [%]")].concat()
+                [of_both("95 % intervals that contain # [%]"), of_both("median width for # [%]")].concat()
             }
             ErrorMeasure::Failures => vec!["trials without answer [%]".to_owned()],
             ErrorMeasure::Validation => vec!["median error of an unseen heading [°]".to_owned()],
@@ -176,7 +176,7 @@ impl<'a> ComparedMethods<'a> {
     /// Caption: the quantity and how to read it.
     fn reading(&self) -> &'static str {
         match self.measure {
-            ErrorMeasure::OverBound => {
+            ErrorMeasure::RatioToBound => {
                 "Root mean square error of K and T over the Cramér–Rao bound, with 95 % bootstrap intervals. A \
                  constant bias falls here as the noise grows."
             }
@@ -204,7 +204,7 @@ impl<'a> ComparedMethods<'a> {
     /// Cramér–Rao bound of the standard deviation of K (panel 0) or T (panel 1), %; `None` if the cell has none, or if
     /// the measure is not an error of K and T.
     fn bound(&self, cell: usize, panel: usize) -> Option<f64> {
-        let covariance = self.design.cells[cell].bound_percent2.filter(|_| self.measure.is_of_errors())?;
+        let covariance = self.design.cells[cell].cramer_rao_percent2.filter(|_| self.measure.is_of_errors())?;
         Some(covariance[panel][panel].sqrt())
     }
 
@@ -212,7 +212,7 @@ impl<'a> ComparedMethods<'a> {
     fn statistic(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
         let figure = self.measure.statistic(self.summary.performance(cell, method)?, panel)?;
         let is_worthless = self.measure.is_of_errors() && figure.value > MAX_ERROR;
-        let unit = if self.measure == ErrorMeasure::OverBound { self.bound(cell, panel)? } else { 1.0 };
+        let unit = if self.measure == ErrorMeasure::RatioToBound { self.bound(cell, panel)? } else { 1.0 };
         let figure = figure.times(1.0 / unit);
         match self.measure == ErrorMeasure::Rms && figure.value > 0.0 && figure.value < MIN_ERROR {
             // The remainder is rounding error.
@@ -229,7 +229,7 @@ impl<'a> ComparedMethods<'a> {
 
     /// Bound in the unit of the panel; `None` if it is not shown.
     fn shown_bound(&self, cell: usize, panel: usize) -> Option<f64> {
-        if self.measure == ErrorMeasure::OverBound {
+        if self.measure == ErrorMeasure::RatioToBound {
             Some(1.0)
         } else {
             self.bound(cell, panel).filter(|_| !self.to_nearest)
@@ -264,7 +264,7 @@ const MIN_LOG_AXIS_RATIO: f64 = 12.0;
 /// Charts of a measure, each with the name of its points and a caption; empty if there is no axis or no value to show.
 /// The horizontal axis is the last numeric axis with few points of the other axes, else the last numeric axis, else the
 /// names of the last axis. The points of the other axes are side by side if they are few, else in one chart each.
-pub fn over_axes(
+pub fn error_charts_over_axes(
     design: &Design,
     summary: &Summary,
     measure: ErrorMeasure,
@@ -277,7 +277,7 @@ pub fn over_axes(
     let number = numbers.iter().find(leaves_few).or(numbers.first()).copied();
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, has no information.
-    let says_something = |performance: &Performance| {
+    let says_something = |performance: &MethodPerformance| {
         let mut figures = (0..measure.panels()).filter_map(|panel| measure.statistic(performance, panel));
         figures.any(|figure| measure != ErrorMeasure::Failures || figure.value > 0.0)
     };

@@ -15,13 +15,13 @@ fn all<'a>(
     curves: &'a FitCurves,
 ) -> impl Iterator<Item = (String, &'a CircleEntry, &'a FitRecord)> {
     let named = |(entry, record): (&'a TrialEntry, &'a FitRecord)| {
-        Some((names::record(&record.name), entry.circle.as_ref()?, record))
+        Some((names::record_name(&record.name), entry.circle.as_ref()?, record))
     };
     document.trials.iter().zip(&curves.records).filter_map(named)
 }
 
 /// Sentence on a recorded circle: advance, transfer and tactical diameter in ship lengths.
-pub fn sentence(name: &str, circle: &CircleEntry) -> String {
+pub fn circle_sentence(name: &str, circle: &CircleEntry) -> String {
     let CircleEntry { side, rudder_deg, advance_lengths, transfer_lengths, tactical_diameter_lengths } = circle;
     let figures = [
         ("advance", advance_lengths),
@@ -59,8 +59,8 @@ fn predicted_sentence(circle: &PredictedCircleEntry) -> String {
 }
 
 /// Sentence on every circle, the recorded ones first.
-pub fn sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
-    let recorded = all(document, curves).map(|(name, circle, _)| sentence(&name, circle));
+pub fn circle_sentences(document: &FitDocument, curves: &FitCurves) -> Vec<String> {
+    let recorded = all(document, curves).map(|(name, circle, _)| circle_sentence(&name, circle));
     recorded.chain(document.predicted_circle.iter().map(predicted_sentence)).collect()
 }
 
@@ -71,7 +71,7 @@ pub struct CircleTrack {
     /// Track, east and north in ship lengths from the execute; north is the approach course.
     pub track: PlotCurve,
     /// Advance, transfer and tactical diameter, ship lengths.
-    pub figures: [Option<f64>; 3],
+    pub lengths: [Option<f64>; 3],
     /// Pen of the track.
     pub pen: Pen,
 }
@@ -79,7 +79,7 @@ pub struct CircleTrack {
 impl CircleTrack {
     /// Layers of the circle, and of lines at its advance, its transfer and its tactical diameter.
     pub fn layers(&self) -> Vec<Layer> {
-        let Self { name, track, figures, pen } = self;
+        let Self { name, track, lengths, pen } = self;
         let mut layers = vec![Layer::line(name.as_str(), track.clone(), *pen)];
         let side = track.finite_pairs().map(|(east, _)| east).max_by(|one, other| one.abs().total_cmp(&other.abs()));
         let side = side.unwrap_or_default().signum();
@@ -88,7 +88,7 @@ impl CircleTrack {
             let curve = PlotCurve::new([from[0], to[0]], [from[1], to[1]]);
             layers.push(Layer::line("", curve, measures));
         };
-        let [advance, transfer, diameter] = *figures;
+        let [advance, transfer, diameter] = *lengths;
         if let Some(advance) = advance {
             line([0.0, 0.0], [0.0, advance]);
             line([0.0, advance], [side * transfer.unwrap_or_default(), advance]);
@@ -126,12 +126,12 @@ pub fn predicted_pen() -> Pen {
 }
 
 /// Tracks of all circles, to scale; `None` if no record has positions and no circle is predicted.
-pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
+pub fn circle_figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> {
     let recorded = all(document, curves).filter_map(|(name, circle, record)| {
-        let figures = [circle.advance_lengths, circle.transfer_lengths, circle.tactical_diameter_lengths];
+        let lengths = [circle.advance_lengths, circle.transfer_lengths, circle.tactical_diameter_lengths];
         Some((
-            sentence(&name, circle),
-            CircleTrack { name, track: record.circle.clone()?, figures, pen: Pen::new(INK) },
+            circle_sentence(&name, circle),
+            CircleTrack { name, track: record.circle_track.clone()?, lengths, pen: Pen::new(INK) },
         ))
     });
     let (mut findings, mut circles): (Vec<String>, Vec<CircleTrack>) = recorded.unzip();
@@ -140,10 +140,10 @@ pub fn figure(document: &FitDocument, curves: &FitCurves) -> Option<PageFigure> 
         circle.pen = Pen::new(style.colour);
     }
     if let Some((entry, track)) = document.predicted_circle.as_ref().zip(curves.predicted_circle.clone()) {
-        let figures = [entry.advance_lengths, entry.transfer_lengths, entry.tactical_diameter_lengths];
+        let lengths = [entry.advance_lengths, entry.transfer_lengths, entry.tactical_diameter_lengths];
         let name = format!("predicted median, {}° of rudder", fixed(entry.rudder_deg, 1));
-        let figures = figures.map(|lengths| Some(lengths.median));
-        circles.push(CircleTrack { name, track, figures, pen: predicted_pen() });
+        let lengths = lengths.map(|length| Some(length.median));
+        circles.push(CircleTrack { name, track, lengths, pen: predicted_pen() });
         let [advance, diameter] =
             [entry.advance_lengths, entry.tactical_diameter_lengths].map(|lengths| significant(lengths.median, 3));
         let rudder = fixed(entry.rudder_deg, 1);

@@ -7,22 +7,28 @@ use estimation::statistics::median;
 use report::number::{MISSING, fixed, optional, significant};
 use report::{Table, TableHead};
 
-use super::tables::{head, row_labels};
+use super::tables::{cell_and_method_head, row_labels};
 use campaign::design::Design;
 use campaign::statistics::{Statistic, grouped, wilson_share};
 use campaign::summary::{ConformalScaling, ImoDecisionTally, PredictionSummary};
 
 /// Coverage of every characteristic of every cell and method.
-pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
-    let head = head(design).texts(["figure", "unit"]).counts(["trials"]);
+pub fn coverage_table(lines: &[PredictionSummary], design: &Design) -> Table {
+    let head = cell_and_method_head(design).texts(["figure", "unit"]).counts(["trials"]);
     let head = head.numbers(["inside 90 %", "lower 95", "upper 95"]).unit("%");
     let mut table = Table::new(head.numbers(["of the ship", "bias", "rms error", "width", "interval score"]));
     for line in lines {
         let mut cells = row_labels(design, line.cell, line.method);
-        let (name, unit) = names::figure_of_merit(&line.name);
+        let (name, unit) = names::figure_of_merit(&line.characteristic);
         cells.extend([name, unit.to_owned(), line.trials.to_string()]);
         cells.extend(percent(line.coverage()));
-        let values = [line.truth(), line.bias(), line.rms(), line.width(), line.score()];
+        let values = [
+            line.mean_truth(),
+            line.median_bias(),
+            line.rms_error(),
+            line.mean_interval_width(),
+            line.mean_interval_score(),
+        ];
         cells.extend(values.map(|value| significant(value, 3)));
         table.push(cells);
     }
@@ -31,9 +37,9 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// Table by cell and method over all characteristics: mean, minimum and maximum share inside the 90 % interval, median
 /// relative width and interval score.
-pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
+pub fn pooled_coverage_table(lines: &[PredictionSummary], design: &Design) -> Table {
     let columns = ["inside 90 %", "lowest", "highest", "width of the value", "interval score of the value"];
-    let head = head(design).counts(["figures", "trials"]).numbers(columns).unit("%");
+    let head = cell_and_method_head(design).counts(["figures", "trials"]).numbers(columns).unit("%");
     let mut table = Table::new(head.texts(["lowest of", "highest of"]));
     for group in lines.chunk_by(|a, b| (a.cell, a.method) == (b.cell, b.method)) {
         let [first, ..] = group else { continue };
@@ -46,11 +52,11 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
         let ends = [sorted[0], sorted[sorted.len() - 1]];
         let mean = group.iter().map(inside_percent).sum::<f64>() / group.len() as f64;
         cells.extend([mean, inside_percent(ends[0]), inside_percent(ends[1])].map(|value| fixed(value, 1)));
-        for value in [PredictionSummary::width, PredictionSummary::score] {
+        for value in [PredictionSummary::mean_interval_width, PredictionSummary::mean_interval_score] {
             let mut relative: Vec<f64> = group.iter().map(|line| 100.0 * line.relative_to_truth(value(line))).collect();
             cells.push(optional(median(&mut relative), 1));
         }
-        cells.extend(ends.map(|line| names::figure_of_merit(&line.name).0));
+        cells.extend(ends.map(|line| names::figure_of_merit(&line.characteristic).0));
         table.push(cells);
     }
     table
@@ -58,7 +64,7 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
 
 /// Intervals of every ship scaled by the factor that those of all other ships need; `None` without an axis `ship` of
 /// three points or more.
-pub fn scaled_by_other_ships(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
+pub fn scaled_coverage_table(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let axis = design.axes.iter().position(|name| name == "ship")?;
     let ship = |line: &PredictionSummary| &design.cells[line.cell].labels[axis];
     let by_ship = grouped(lines.iter(), |line| (line.method, ship(line).clone()));
@@ -85,7 +91,7 @@ pub fn scaled_by_other_ships(lines: &[PredictionSummary], design: &Design) -> Op
 }
 
 /// Decisions on every IMO criterion, over all cells; `None` if no characteristic has a limit.
-pub fn criteria(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
+pub fn criterion_decision_table(lines: &[PredictionSummary], design: &Design) -> Option<Table> {
     let limited = lines.iter().filter_map(|line| Some((line, line.criterion.as_ref()?)));
     let limited = grouped(limited, |(line, criterion)| (criterion.name.clone(), line.method));
     if limited.is_empty() {

@@ -17,7 +17,7 @@ fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// Range of the values of an axis, with the names at both ends.
-pub fn range(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
+pub fn range_phrase(axis: &str, values: impl IntoIterator<Item = Named>) -> String {
     let axis = axis.replace(['*', '_'], "");
     let (quantity, unit) =
         axis.split_once(" [").map_or((axis.as_str(), ""), |(quantity, unit)| (quantity, unit.trim_end_matches(']')));
@@ -49,7 +49,7 @@ fn of_curves(data: &Panels) -> String {
     let Some(group) = data.groups.first().filter(|group| !group.rows.is_empty()) else {
         return String::from("No data");
     };
-    if group.columns.is_some() {
+    if group.multiples_across.is_some() {
         return of_clouds(data);
     }
     let (across, row) = (group.x.len().max(1), group.rows.len().min(2) - 1);
@@ -65,8 +65,8 @@ fn of_curves(data: &Panels) -> String {
     let x = group.x.last().map_or("", |ruler| ruler.title.as_str());
     format!(
         "At {head}{}, {}",
-        range(x, [(String::new(), end)]).replace(": ", " "),
-        range(&group.rows[row].y.title, at_end)
+        range_phrase(x, [(String::new(), end)]).replace(": ", " "),
+        range_phrase(&group.rows[row].y.title, at_end)
     )
 }
 
@@ -80,7 +80,7 @@ fn of_clouds(data: &Panels) -> String {
         let square = values.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / values.len() as f64;
         Some((panel.head.clone().unwrap_or_default(), square.sqrt()))
     };
-    range("scatter of T [%]", group.panels.iter().filter_map(spread))
+    range_phrase("scatter of T [%]", group.panels.iter().filter_map(spread))
 }
 
 /// Range of values in the row with the largest ratio of its values; over all rows if none has several values.
@@ -100,7 +100,7 @@ fn of_rows(data: &NamedRows) -> String {
     let rows = 0..column.rows.len();
     if rows.clone().all(|row| values(row).len() < 2) {
         // A row is one method or record.
-        return range(&column.x.title, rows.filter_map(|row| Some((name(row), values(row).first()?.1))));
+        return range_phrase(&column.x.title, rows.filter_map(|row| Some((name(row), values(row).first()?.1))));
     }
     let spread = |row: &usize| {
         let values = values(*row);
@@ -108,7 +108,7 @@ fn of_rows(data: &NamedRows) -> String {
         end(f64::max) / end(f64::min).max(f64::MIN_POSITIVE)
     };
     let widest = rows.max_by(|a, b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
-    format!("{}: {}", name(widest), range(&column.x.title, values(widest)))
+    format!("{}: {}", name(widest), range_phrase(&column.x.title, values(widest)))
 }
 
 /// Range over the cells of a map; over the correct ones if it shows shares of trials.
@@ -123,11 +123,11 @@ fn of_map(data: &CellMap) -> String {
         }
     }
     if let report::figures::Shades::Range(_, title) = &data.shades {
-        return range(title, values.into_iter().map(|(place, _, value, _)| (place, value)));
+        return range_phrase(title, values.into_iter().map(|(place, _, value, _)| (place, value)));
     }
     let right = values.into_iter().filter(|(.., is_right)| *is_right);
     let of_row = |row: &str| row.split(" (n").next().unwrap_or(row).to_owned();
-    range("right answers [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
+    range_phrase("right answers [% of the trials]", right.map(|(_, row, value, _)| (of_row(row), value)))
 }
 
 /// Finding of a figure of a zig-zag: its overshoots.
@@ -152,11 +152,11 @@ mod tests {
         let named =
             |all: &[(&str, f64)]| all.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect::<Vec<_>>();
         assert_eq!(
-            range("rms error of T [%]", named(&[("a", 3.0), ("b", 1.25), ("c", f64::NAN)])),
+            range_phrase("rms error of T [%]", named(&[("a", 3.0), ("b", 1.25), ("c", f64::NAN)])),
             "rms error of T from 1.2 % (b) to 3.0 % (a)"
         );
-        assert_eq!(range("overshoot [°]", named(&[("", 8.0)])), "overshoot: 8.0°");
-        assert_eq!(range("K [1/s]", named(&[])), "K: no answer");
+        assert_eq!(range_phrase("overshoot [°]", named(&[("", 8.0)])), "overshoot: 8.0°");
+        assert_eq!(range_phrase("K [1/s]", named(&[])), "K: no answer");
     }
 
     #[test]

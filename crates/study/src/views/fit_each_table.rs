@@ -7,18 +7,20 @@ use serde::Serialize;
 use serde_json::Value;
 use trial::Quantity;
 
-use super::method_table::estimate;
+use super::method_table::estimate_and_interval;
 use crate::work::fit_each::LogFit;
 
 /// Table with one row for every log.
 pub fn table(fits: &[LogFit]) -> Table {
     let head = TableHead::default().texts(["file", "method"]);
-    let head = head.numbers(["K"]).unit("1/s").interval().numbers(["T"]).unit("s").interval();
+    let head = head.numbers(["K"]).unit("1/s").interval95().numbers(["T"]).unit("s").interval95();
     let head = head.texts(["believe", "residual"]).counts(["warnings"]).texts(["codes", "reason"]);
     let mut table = Table::new(head);
     for LogFit { file, verdict, warnings, error, .. } in fits {
         let verdict = verdict.as_ref();
-        let number = |index: Option<Quantity>| index.map_or_else(|| [missing(), missing()], |index| estimate(&index));
+        let number = |index: Option<Quantity>| {
+            index.map_or_else(|| [missing(), missing()], |index| estimate_and_interval(&index))
+        };
         let mut codes: Vec<String> = warnings.iter().map(|warning| word(&warning.code)).collect();
         codes.dedup();
         let mut cells = vec![file.display().to_string(), verdict.map_or_else(missing, |taken| taken.method.clone())];

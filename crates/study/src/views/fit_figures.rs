@@ -6,10 +6,10 @@ use document::method::MethodEntry;
 use document::names;
 use document::single_records::{SingleRecord, SingleRecords};
 use report::figures::{
-    AxisSpec, Layer, LayerKind, LayeredPanel, PanelGroup, PanelRow, Panels, Pen, Plot, Reference95, TickRule,
+    AxisSpec, Layer, LayerKind, LayeredPanel, PanelGroup, PanelRow, Panels, Pen, Plot, ReferenceBand95, TickRule,
 };
 use report::number::{counted, fixed, significant};
-use report::palette::{BEFORE, CurveStyle, Marker, SOLID};
+use report::palette::{CurveStyle, MODEL_BEFORE, Marker, SOLID};
 use report::{CurveOrigin, PageFigure, PlotCurve, symbol};
 use ship::Particulars;
 use trial::Quantity;
@@ -23,7 +23,7 @@ use crate::documents::fit_curves::{FitCurves, FitRecord};
 pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
     let fitted: Vec<&FitRecord> = curves.records.iter().filter(|record| !record.validation).collect();
     let name = match fitted[..] {
-        [only] => names::record(&only.name),
+        [only] => names::record_name(&only.name),
         _ => format!("{} records together", fitted.len()),
     };
     let caption = format!("{name}: K and T of every method with its intervals and regions.");
@@ -33,7 +33,7 @@ pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
             "{name}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
         );
         let gain = |fit: &SingleRecord| (format!("rudder {}°", fixed(fit.amplitude.rudder_deg, 0)), fit.k_per_s.value);
-        let finding = format!("Record by record {}", findings::range("K [1/s]", all.records.iter().map(gain)));
+        let finding = format!("Record by record {}", findings::range_phrase("K [1/s]", all.records.iter().map(gain)));
         PageFigure::new("amplitude", finding, caption, single_records(all, document))
     }));
     let shown = document.plotted_method();
@@ -71,7 +71,7 @@ fn agreement(document: &FitDocument) -> String {
 /// Figures of a record; `suffix` ends their names, `shown` is the method whose fit has a figure of its own.
 fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
     let FitRecord { replays, rejected, .. } = record;
-    let name = names::record(&record.name) + if record.validation { " (validation)" } else { "" };
+    let name = names::record_name(&record.name) + if record.validation { " (validation)" } else { "" };
     let figure = |kind: &str, finding: String, description: &str, plot: Plot| {
         let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };
         PageFigure::new(stem, finding, format!("{name}: {description}"), plot)
@@ -114,7 +114,7 @@ fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageF
 
 /// Record with marks at excluded or doubtful readings.
 fn raw(record: &FitRecord, marks: &[PlotCurve; 2]) -> Panels {
-    let style = CurveStyle { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
+    let style = CurveStyle { colour: MODEL_BEFORE, marker: Marker::Diamond, dash: SOLID, is_hollow: true };
     let marks = marks.each_ref().map(|curve| {
         Layer::marks("left out or doubtful", style, curve.pairs().map(|(time, value)| (time, value, None)).collect())
     });
@@ -158,7 +158,7 @@ fn index_plane(document: &FitDocument, curves: &FitCurves) -> Panels {
         let (k, t) = scaled(estimates.k_per_s.value, estimates.t_s.value);
         Some([region, Some(Layer::marks(entry.method.as_str(), style, vec![(k, t, None)]))])
     };
-    let [k, t] = titles(ship).map(|title| AxisSpec::decimal(title).within(PLANE_REACH, None));
+    let [k, t] = titles(ship).map(|title| AxisSpec::decimal(title).limited_around(PLANE_REACH, None));
     let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
     let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
     Panels {
@@ -190,8 +190,8 @@ fn single_records(all: &SingleRecords, document: &FitDocument) -> Panels {
     let row = |title: String, joint: Option<Quantity>, factor: f64| {
         let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());
         PanelRow {
-            reference: joint.map(|all| Reference95 { value: all.value, band: all.ci95.unwrap_or([all.value; 2]) }),
-            ..PanelRow::new(AxisSpec::decimal(title).within(AMPLITUDE_REACH, Some(0.0)), 0.3)
+            reference: joint.map(|all| ReferenceBand95 { value: all.value, band: all.ci95.unwrap_or([all.value; 2]) }),
+            ..PanelRow::new(AxisSpec::decimal(title).limited_around(AMPLITUDE_REACH, Some(0.0)), 0.3)
         }
     };
     let ([by_k, by_t], [k, t]) = (factors(ship), titles(ship));

@@ -4,7 +4,7 @@ use askama::Template;
 use document::fit::{FitDocument, ResidualKind, VerdictEntry, VerdictReason, ZigZagEntry};
 use document::method::MethodEntry;
 use document::names;
-use report::markdown::{sentence, text};
+use report::markdown::{escaped_sentence, escaped_text};
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use report::{Page, PlacedFigures, Table};
 use trial::Quantity;
@@ -61,25 +61,25 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
     let mut figures = PlacedFigures::default();
     figures.put("first", first);
     figures.put("folded", folded);
-    figures.put("circle", circle::figure(document, curves));
-    let verdict_lines = verdict(document).unwrap_or_default() + "\n" + &headline(document, curves);
+    figures.put("circle", circle::circle_figure(document, curves));
+    let verdict_lines = fit_verdict(document).unwrap_or_default() + "\n" + &fit_headline(document, curves);
     let mut lines = verdict_lines.lines().map(str::to_owned);
     let notes = notes(document, curves);
     let note = |line: &str| (if line.starts_with("  ") { "  " } else { "" }, line.trim().to_owned());
     let has_form = !document.form.is_empty();
-    let names = curves.records.iter().map(|record| names::record(&record.name));
+    let names = curves.records.iter().map(|record| names::record_name(&record.name));
     let named = names.zip(document.trials.iter().map(|trial| &trial.trial_particulars));
     let page = FitPage {
         title: title(document, curves),
         particulars: first_page::particulars_table(named),
         verdict: document.verdict.as_ref().and_then(|_| lines.next()),
         lines: lines.filter(|line| !line.is_empty()).collect(),
-        criteria: has_form.then(|| predict_form::criteria(&document.form)),
-        circles: circle::sentences(document, curves),
-        form: has_form.then(|| predict_form::tables(&document.form)),
+        criteria: has_form.then(|| predict_form::form_criterion_table(&document.form)),
+        circles: circle::circle_sentences(document, curves),
+        form: has_form.then(|| predict_form::form_tables(&document.form)),
         form_remarks: &document.form_remarks,
         mark: "###",
-        answers: answers(document, curves),
+        answers: answer_table(document, curves),
         records: document.single_records.as_ref().map(indices::single_record_table),
         warnings: document.verdict_warnings().map(ToString::to_string).collect(),
         notes: notes.lines().filter(|line| !line.trim().is_empty()).map(note).collect(),
@@ -93,7 +93,7 @@ pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
 /// Name of the record, or number of the records, with the scale of the ship if it is known.
 fn title(document: &FitDocument, curves: &FitCurves) -> String {
     let records = match (&document.trials[..], curves.records.first()) {
-        ([_], Some(record)) => names::record(&record.name),
+        ([_], Some(record)) => names::record_name(&record.name),
         (several, _) => format!("{} records", several.len()),
     };
     let ship = document.particulars().map_or_else(String::new, |ship| format!(" ({})", scale_name(ship)));
@@ -101,7 +101,7 @@ fn title(document: &FitDocument, curves: &FitCurves) -> String {
 }
 
 /// Text below the table on the screen: characteristics of the records, prime indices, comparison of scales.
-pub fn below_table(document: &FitDocument, curves: &FitCurves) -> String {
+pub fn text_below_table(document: &FitDocument, curves: &FitCurves) -> String {
     let mut below_table = notes(document, curves);
     for (scale_sentence, table) in scales(document) {
         below_table += &format!("\n{scale_sentence}\n{}", table.map_or_else(String::new, |table| table.to_text()));
@@ -110,19 +110,22 @@ pub fn below_table(document: &FitDocument, curves: &FitCurves) -> String {
 }
 
 /// Table of the estimates of all methods.
-pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
+pub fn answer_table(document: &FitDocument, curves: &FitCurves) -> Table {
     let validated = curves.records.iter().filter(|record| record.validation);
-    method_table::table(&document.methods, &validated.map(|record| names::record(&record.name)).collect::<Vec<_>>())
+    method_table::table(
+        &document.methods,
+        &validated.map(|record| names::record_name(&record.name)).collect::<Vec<_>>(),
+    )
 }
 
 /// Verdict: recommended K, T and δ_r with the reason; or the reason why there is no recommendation. `None` if the
 /// document has no verdict.
-pub fn verdict(document: &FitDocument) -> Option<String> {
+pub fn fit_verdict(document: &FitDocument) -> Option<String> {
     let verdict = document.verdict.as_ref()?;
     let entry = document.methods.iter().find(|entry| entry.method == verdict.method)?;
     let estimates = entry.parameters.as_ref()?;
     let [k, t, bias] = [estimates.k_per_s, estimates.t_s, estimates.delta_r_deg]
-        .map(|quantity| method_table::estimate(&quantity)[0].clone());
+        .map(|quantity| method_table::estimate_and_interval(&quantity)[0].clone());
     if let Some(because) = &verdict.because {
         let trial = match &document.trials[..] {
             [only] if only.zigzag.is_some() => "this zig-zag",
@@ -130,7 +133,7 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
             _ => "these records",
         };
         let advice = match &document.single_records {
-            Some(all) if all.agree == Some(false) => {
+            Some(all) if all.is_consistent == Some(false) => {
                 format!(
                     "{} Use K and T of each record, or fit the records together with `study trace`.",
                     indices::range_sentence(all)
@@ -160,8 +163,8 @@ pub fn verdict(document: &FitDocument) -> Option<String> {
     text +=
         &document.single_records.as_ref().map_or_else(String::new, |all| format!("\n{}", indices::range_sentence(all)));
     text += &contradiction(document, verdict);
-    if !verdict.set_apart.is_empty() {
-        text += &format!("\nReplay error more than ten times larger: {}.", verdict.set_apart.join(", "));
+    if !verdict.far_off_methods.is_empty() {
+        text += &format!("\nReplay error more than ten times larger: {}.", verdict.far_off_methods.join(", "));
     }
     Some(text)
 }
@@ -222,13 +225,15 @@ fn contradiction(document: &FitDocument, verdict: &VerdictEntry) -> String {
 
 /// Name, number of rows and duration of the record, or number of records and rows; the common scale, and the check
 /// against earlier trials.
-pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
+pub fn fit_headline(document: &FitDocument, curves: &FitCurves) -> String {
     let rows: usize = document.trials.iter().map(|trial| trial.samples).sum();
     let head = match (&document.trials[..], curves.records.first()) {
-        ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", names::record(&record.name), only.duration_s),
+        ([only], Some(record)) => {
+            format!("{}: {rows} rows, {:.1} s", names::record_name(&record.name), only.duration_s)
+        }
         (several, _) => format!("{} records together: {rows} rows", several.len()),
     };
-    let prior = document.earlier_trials.as_ref().map(prior::sentence);
+    let prior = document.earlier_trials.as_ref().map(prior::earlier_trials_sentence);
     let sentences = document.scaling.iter().cloned().chain(prior);
     sentences.fold(head, |head, sentence| format!("{head}\n{sentence}"))
 }
@@ -236,17 +241,19 @@ pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
 /// Files of renamed records, reasons of failed methods, and zig-zag characteristics of the records.
 fn notes(document: &FitDocument, curves: &FitCurves) -> String {
     let renamed = curves.records.iter().filter(|record| record.is_renamed);
-    let renamed = renamed.map(|run| format!("{} is {}\n", names::record(&run.name), run.file)).collect::<String>();
+    let renamed = renamed.map(|run| format!("{} is {}\n", names::record_name(&run.name), run.file)).collect::<String>();
     let failed = |entry: &MethodEntry| Some(format!("{} failed: {}\n", entry.method, entry.reason.as_ref()?));
     let failed = document.methods.iter().filter_map(failed).collect::<String>();
     let mut notes: String =
         [renamed, failed].into_iter().filter(|lines| !lines.is_empty()).map(|lines| format!("\n{lines}")).collect();
     for (entry, record) in document.trials.iter().zip(&curves.records) {
-        let head = if document.trials.len() > 1 { format!("{}: ", names::record(&record.name)) } else { String::new() };
+        let head =
+            if document.trials.len() > 1 { format!("{}: ", names::record_name(&record.name)) } else { String::new() };
         match (&entry.zigzag, &entry.no_zigzag) {
             (Some(zigzag), _) => notes += &format!("\n{head}{}", characteristics(zigzag)),
             (None, _) if entry.circle.is_some() => {
-                let circle = entry.circle.iter().map(|turn| circle::sentence(&names::record(&record.name), turn));
+                let circle =
+                    entry.circle.iter().map(|turn| circle::circle_sentence(&names::record_name(&record.name), turn));
                 notes += &circle.map(|sentence| format!("\n{sentence}\n")).collect::<String>();
             }
             (None, Some(why)) => notes += &format!("\n{head}no zig-zag characteristics: {why}\n"),

@@ -8,7 +8,7 @@ use predict::prediction::RANGE_FACTOR;
 use report::figures::{
     AxisSpec, Layer, LayeredPanel, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowsColumn, TickRule,
 };
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::number::{counted, fixed, significant};
 use report::{CurveOrigin, PageFigure};
 
@@ -28,7 +28,7 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
     all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let [worst, best] = [all.first()?, all.last()?];
     let error_words = |entry: &(&RecordEntry, _, _), degrees| {
-        format!("{} {}°", names::record(&entry.0.name), significant(degrees, 2))
+        format!("{} {}°", names::record_name(&entry.0.name), significant(degrees, 2))
     };
     let [worst, best] = [worst, best].map(|entry| error_words(entry, size(entry)));
     let finding = match all.len() {
@@ -41,7 +41,7 @@ pub fn residual_figure(document: &TraceDocument, curves: &TraceCurves) -> Option
             Layer::line(origin.label(), angle_curve_deg(&replay.time, &replay.residual), pen)
         };
         let [before, after] = [&errors.before, &errors.after].map(|error| significant(error.heading_rmse_deg, 2));
-        let head = format!("{}: {before}° → {after}°", names::record(&entry.name));
+        let head = format!("{}: {before}° → {after}°", names::record_name(&entry.name));
         LayeredPanel { head: Some(head), layers: replays_by_origin(record).map(line).into(), ..LayeredPanel::default() }
     };
     let row = PanelRow::zeroed(AxisSpec::new("residual [°]", TickRule::Angle), 0.13);
@@ -69,7 +69,7 @@ pub fn beyond_fitted_rudder(document: &TraceDocument, curves: &TraceCurves) -> O
     beyond.sort_by(|a, b| a.1.total_cmp(&b.1));
     let phrase = |(name, covered, degrees): &(&String, f64, f64)| {
         let [share, off] = [fixed(100.0 * covered, 0), significant(*degrees, 2)];
-        format!("{share} % of the headings of {} (heading error {off}° rms)", text(&names::record(name)))
+        format!("{share} % of the headings of {} (heading error {off}° rms)", escaped_text(&names::record_name(name)))
     };
     let all: Vec<String> = beyond.iter().map(phrase).collect();
     (!all.is_empty()).then(|| format!(" There the 95 % band holds {}.", all.join(" and ")))
@@ -87,7 +87,7 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
             pairs.into_iter().filter_map(mark).collect()
         };
         let rows = judged.iter().map(|record| row(record.errors)).collect();
-        RowsColumn { x: AxisSpec::decimal(title), rows, zero: true, ..RowsColumn::default() }
+        RowsColumn { x: AxisSpec::decimal(title), rows, has_zero_line: true, ..RowsColumn::default() }
     };
     let mut columns = vec![column(String::from("whole replay [°]"), &|error| Some(error.heading_rmse_deg))];
     columns.extend(HORIZONS_S.map(|window_s| {
@@ -100,7 +100,7 @@ pub fn error_figure(document: &TraceDocument) -> Option<PageFigure> {
         heading_error_ratio(judged.iter().map(|line| line.errors))
     );
     let data = NamedRows {
-        names: judged.iter().map(|record| format!("{}, {}", names::record(record.name), record.used)).collect(),
+        names: judged.iter().map(|record| format!("{}, {}", names::record_name(record.name), record.used)).collect(),
         columns,
         ..NamedRows::default()
     };

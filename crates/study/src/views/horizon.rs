@@ -80,7 +80,7 @@ fn layers(records: &[&[HorizonEntry]], horizons: &[Vec<&HorizonEntry>], number: 
 }
 
 /// Figure of the error growth; `None` if no record was held out, or if the document does not hold the errors.
-pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
+pub fn horizon_figure(document: &TraceDocument) -> Option<PageFigure> {
     let (_, judged) = document.errors();
     let records: Vec<&[HorizonEntry]> =
         judged.iter().map(|record| record.errors.horizons.as_slice()).filter(|horizons| !horizons.is_empty()).collect();
@@ -95,10 +95,9 @@ pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
         _ => " Bands: the range of the records.",
     };
     let caption = format!(
-        "Root mean square heading error against how far ahead a replay goes, on records that were not fitted: it is \
-         restarted from the best heading and yaw rate at this interval; the last point is the whole record. Marks: \
-         the records together, as \
-         far as half of them go.{each}"
+        "Root mean square heading error of replays that are restarted at this interval, from the best heading and yaw \
+         rate, on records that were not fitted. The last point is the whole record. Marks: the records together, at \
+         intervals that half of them or more have.{each}"
     );
     let finding = finding(&horizons, &format!("{}, {used}", counted(records.len() as u64, "record")))?;
     Some(PageFigure::new("horizon", finding, caption, Panels::new(PanelGroup::over(x, vec![(row, layers)]))))

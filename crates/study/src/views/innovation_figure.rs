@@ -42,7 +42,7 @@ fn ranks(count: usize) -> Vec<usize> {
 
 /// Figure of the innovations of a record at times (s), in standard deviations of the estimated noise; `None` for fewer
 /// than eight.
-pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
+pub fn innovation_figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Option<PageFigure> {
     let spacing = upper_median(time.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or_default();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     if time.len() != values.len() || sorted.len() < MIN_INNOVATIONS || spacing <= 0.0 {
@@ -57,9 +57,9 @@ pub fn figure(stem: String, name: &str, [time, values]: &[Vec<f64>; 2]) -> Optio
     };
     let title = format!("{name}: {judged} (Ljung–Box, {} lags)", whiteness_lags(sorted.len()));
     let caption = format!(
-        "{name}: innovations, what is new in every heading given those before it, over the standard deviation of the noise. \
-         Left: on the line they are normal and as large as the noise that was found; the band holds each of them with 95 %. \
-         Right: their autocorrelation; of white innovations 95 % lies between the dashed lines.",
+        "{name}: innovations (one-step prediction errors) over the standard deviation of the noise. Left: innovations that \
+         are normal and as large as the estimated noise lie on the line, each inside the band with a probability of 95 %. \
+         Right: their autocorrelation; 95 % of that of white innovations lies between the dashed lines.",
     );
     let groups = vec![quantiles(&sorted), correlation(&series)];
     Some(PageFigure::new(stem, title, caption, Panels { groups, ..Panels::default() }))
@@ -84,7 +84,7 @@ fn quantiles(sorted: &[f64]) -> PanelGroup {
     ];
     let row = PanelRow::zeroed(AxisSpec::decimal("innovation [sd]"), 0.32);
     let mut group = PanelGroup::over(AxisSpec::decimal("normal quantile [sd]"), vec![(row, layers)]);
-    (group.is_half, group.zero) = (true, true);
+    (group.is_half, group.has_zero_line) = (true, true);
     group.panels[0].head = Some(format!("{outside} of {count} outside the band"));
     group
 }
@@ -94,10 +94,11 @@ fn correlation(series: &GappedSeries) -> PanelGroup {
     let count = series.values.len();
     let points = autocorrelation(series, whiteness_lags(count));
     let bound = 1.96 / (count as f64).sqrt();
-    let outside = points.iter().filter(|lag| lag.value.abs() > bound).count();
-    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: false };
-    let places = points.iter().map(|lag| (lag.lag as f64 * series.spacing, lag.value, None)).collect();
-    let row = PanelRow { levels: vec![-bound, bound], ..PanelRow::zeroed(AxisSpec::decimal("autocorrelation"), 0.32) };
+    let outside = points.iter().filter(|lag| lag.coefficient.abs() > bound).count();
+    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, is_hollow: false };
+    let places = points.iter().map(|lag| (lag.lag as f64 * series.spacing, lag.coefficient, None)).collect();
+    let row =
+        PanelRow { dashed_levels: vec![-bound, bound], ..PanelRow::zeroed(AxisSpec::decimal("autocorrelation"), 0.32) };
     let thin = Pen::new(HEADING).width(0.6);
     let mut group = PanelGroup::over(
         AxisSpec::decimal("lag [s]"),
@@ -124,7 +125,7 @@ mod tests {
 
     fn groups(values: &[f64]) -> (String, Vec<PanelGroup>) {
         let time = (0..values.len()).map(|row| 0.5 * row as f64).collect();
-        let figure = figure("innovations".into(), "run", &[time, values.to_vec()]).expect("many");
+        let figure = innovation_figure("innovations".into(), "run", &[time, values.to_vec()]).expect("many");
         let report::figures::Plot::Panels(panels) = figure.plot else { panic!("panels") };
         (figure.finding, panels.groups)
     }
@@ -149,7 +150,7 @@ mod tests {
 
     #[test]
     fn few_numbers_are_not_judged() {
-        assert!(figure(String::new(), "run", &[vec![0.0, 1.0], vec![0.1, 0.2]]).is_none());
+        assert!(innovation_figure(String::new(), "run", &[vec![0.0, 1.0], vec![0.1, 0.2]]).is_none());
         assert!(ranks(5000).len() < 200 && ranks(9).len() == 9);
     }
 }

@@ -2,12 +2,12 @@
 //! in colour and all others pale.
 
 use campaign::design::Design;
-use campaign::scenario::Highlight;
+use campaign::scenario::{Highlight, TRACE_ID};
 use report::figures::{
     CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, PanelGroup, Panels, Pen, Plot,
 };
 use report::number::{counted, significant};
-use report::palette::{QUIET, RECORD};
+use report::palette::{RECORD, UNHIGHLIGHTED};
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
 use campaign::statistics::{distinct, grouped, wilson_share};
@@ -18,15 +18,21 @@ use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
+/// Remark under a figure with traces.
+pub const TRACE_REMARK: &str = "A trace adds to a first-order model the effects that it lacks.";
+
 /// Remark on the number of trials behind every value, or its range over the cells; for measured records the meaning of
 /// n, whose value is in the name of each row.
 pub fn trials_remark(design: &Design) -> String {
     if design.is_measured() {
-        return String::from("n: predicted records.");
+        return format!("n: predicted records. {TRACE_REMARK}");
     }
-    let counts: Vec<u64> = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).collect();
+    let counts: Vec<u64> =
+        design.cells.iter().map(|cell| cell.stored_replicates.end - cell.stored_replicates.start).collect();
     let each = if design.cells.len() > 1 { " each" } else { "" };
-    format!("{} simulated trials{each}.", count_range(&counts))
+    let trials = format!("{} simulated trials{each}.", count_range(&counts));
+    let has_trace = design.methods.iter().any(|method| method.id == TRACE_ID);
+    if has_trace { format!("{trials} {TRACE_REMARK}") } else { trials }
 }
 
 /// Range of counts as text: "4 to 40", or the count that all have.
@@ -40,7 +46,7 @@ pub const SIMULATED_REMARK: &str = "Simulated trials.";
 
 /// Puts the remark on its trials before the other remarks under a figure, or at the end of the caption of a zig-zag.
 pub fn add_trials_remark(figure: &mut PageFigure, remark: &str) {
-    match figure.plot.note() {
+    match figure.plot.note_mut() {
         Some(note) => *note = Some([Some(remark), note.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ")),
         None => figure.caption += &format!(" {remark}"),
     }
@@ -58,7 +64,7 @@ pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
         Plot::ZigZag(_) => None,
     };
     let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
-    if let Some(note) = plot.note() {
+    if let Some(note) = plot.note_mut() {
         let remarks: Vec<String> = over_bound.into_iter().chain(note.take()).chain(remark).collect();
         *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
     }
@@ -86,15 +92,15 @@ fn paled(quiet: Vec<Layer>, names: &[String]) -> Vec<Layer> {
 /// A layer in pale colours, which keeps its name; a line has a gap at values beyond the axis.
 fn pale(mut layer: Layer) -> Layer {
     match &mut layer.kind {
-        LayerKind::Line(_) | LayerKind::Marks(Marks { joined: Some(_), .. }) => {
+        LayerKind::Line(_) | LayerKind::Marks(Marks { joining_line: Some(_), .. }) => {
             layer.kind = LayerKind::Line(Pen { opacity: 0.45, ..Pen::new(RECORD).width(0.6) });
             layer.curve.y.iter_mut().filter(|y| y.is_infinite()).for_each(|y| *y = f64::NAN);
         }
-        LayerKind::Marks(marks) => (marks.style.colour, marks.intervals) = (QUIET, Vec::new()),
-        LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = QUIET,
+        LayerKind::Marks(marks) => (marks.style.colour, marks.intervals) = (UNHIGHLIGHTED, Vec::new()),
+        LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = UNHIGHLIGHTED,
         LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(_) => {}
     }
-    layer.within(ASIDE)
+    layer.widening_at_most(ASIDE)
 }
 
 /// Highlights layers of panels; returns remarks on missing methods and on grey lines beyond the axes, `None` without
@@ -108,7 +114,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let mut has_grey = false;
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for group in &mut data.groups {
-        if group.columns.is_some() {
+        if group.multiples_across.is_some() {
             // Small multiples show one method each.
             group.panels.retain(|panel| !is_quiet(panel.head.as_ref(), about));
             continue;
@@ -129,7 +135,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             are_low |= quiet.iter().any(|layer| layer.curve.y.contains(&MIN_ERROR));
             panel.layers = paled(quiet, &quiet_names);
             let values = point_values(&shown, &points, &unit);
-            panel.detail = shown_over_bound(&shown).filter(|_| *over_bound);
+            panel.result = shown_over_bound(&shown).filter(|_| *over_bound);
             panel.layers.extend(shown.into_iter().chain(values));
         }
         data.names_aside = group.panels.iter().all(has_distinct_names);
@@ -247,7 +253,7 @@ fn mean_row(panel: &[Vec<MapCell>], members: &[usize]) -> Vec<MapCell> {
         let values = members.iter().filter_map(|&row| panel[row][column].value).collect::<Vec<_>>();
         let value = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
         let counted =
-            || members.iter().map(|&row| (panel[row][column].value.unwrap_or(0.0), panel[row][column].trials));
+            || members.iter().map(|&row| (panel[row][column].value.unwrap_or(0.0), panel[row][column].trial_count));
         let positive = counted().map(|(share, trials)| 0.01 * share * trials as f64).sum::<f64>().round();
         let interval = wilson_share(positive as u64, counted().map(|(_, trials)| trials).sum());
         let interval = interval.and_then(|share| share.times(100.0).ci95);
@@ -281,7 +287,7 @@ mod tests {
                 .into(),
             ..LayeredPanel::default()
         };
-        let titles = ["95 % intervals that hold K [%]", "… that hold T [%]", "width of K [%]", "width of T [%]"];
+        let titles = ["95 % intervals that contain K [%]", "… that contain T [%]", "width of K [%]", "width of T [%]"];
         let group = PanelGroup {
             x: vec![AxisSpec::decimal("x"); 2],
             rows: titles.iter().map(|title| PanelRow::new(AxisSpec::decimal(*title), 0.2)).collect(),
@@ -297,7 +303,7 @@ mod tests {
         let names: Vec<Option<&str>> = panels[0].layers.iter().map(|layer| layer.name.as_deref()).collect();
         assert_eq!(names, [Some("srivc"), Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
-        assert_eq!((marks.style.colour, panels[0].layers[0].max_axis_widening), (QUIET, Some(ASIDE)));
+        assert_eq!((marks.style.colour, panels[0].layers[0].max_axis_widening), (UNHIGHLIGHTED, Some(ASIDE)));
         assert_eq!(data.note, None);
     }
 
@@ -320,7 +326,7 @@ mod tests {
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
         assert_eq!((row.len(), row[1].name.as_deref()), (2, Some("3 others, range")));
-        assert!(matches!(row[1].kind, RowKind::Range(_, [1.0, 3.0])));
+        assert!(matches!(row[1].kind, RowKind::WideInterval(_, [1.0, 3.0])));
     }
 
     #[test]
@@ -357,7 +363,11 @@ mod tests {
             layer("output-error", 0.125),
             layer("maximum-likelihood", 0.1251),
             layer("srivc", 9.0),
-            Layer::line(CurveOrigin::Bound.label(), PlotCurve::new(vec![2.0, 5.0], vec![0.1, 0.15]), Pen::new(QUIET)),
+            Layer::line(
+                CurveOrigin::Bound.label(),
+                PlotCurve::new(vec![2.0, 5.0], vec![0.1, 0.15]),
+                Pen::new(UNHIGHLIGHTED),
+            ),
         ];
         let group = PanelGroup::over(
             AxisSpec::decimal("executes"),
@@ -390,14 +400,14 @@ mod tests {
         let note =
             "×: times the Cramér–Rao bound, methods in colour. Marks. Grey lines end where an error exceeds 100 %.";
         assert_eq!(data.note.as_deref(), Some(note));
-        assert_eq!(data.groups[0].panels[0].detail.as_deref(), Some("1.2–2.5×"));
+        assert_eq!(data.groups[0].panels[0].result.as_deref(), Some("1.2–2.5×"));
     }
 
     #[test]
     fn rows_of_a_map_that_are_alike_are_one() {
-        let row = |value: f64| vec![MapCell { value: Some(value), trials: 10, ..MapCell::default() }];
+        let row = |value: f64| vec![MapCell { value: Some(value), trial_count: 10, ..MapCell::default() }];
         let map = CellMap {
-            titles: Default::default(),
+            axis_titles: Default::default(),
             columns: vec!["right".into()],
             rows: ["known: a", "unknown: b", "known: c", "unknown: tug"].map(String::from).to_vec(),
             shades: report::figures::Shades::Shares,

@@ -5,12 +5,12 @@ use campaign::statistics::distinct;
 use report::CurveOrigin;
 use report::figures::{NamedRows, RowItem, RowKind, RowPlace, RowsColumn};
 use report::number::{counted, fixed, significant};
-use report::palette::{CurveStyle, QUIET, RECORD, RGBColor};
+use report::palette::{CurveStyle, RECORD, RGBColor, UNHIGHLIGHTED};
 
 use super::pooled_charts::{ALL_CELLS_ROW, COUNT_PREFIX};
 
 /// Maximum number of rows that all have their values written.
-const MAX_NUMBERED_ROWS: usize = 10;
+const MAX_NUMBERED_ROWS: usize = 12;
 
 /// Strength of the colour of marks in rows that are not highlighted.
 const TINT: f64 = 0.5;
@@ -96,21 +96,23 @@ fn sort_rows(data: &mut NamedRows, about: &[String]) {
     }
 }
 
-/// Marks that are not highlighted: those of a single method in grey, those of several as a range.
-fn pale(quiet: Vec<RowItem>, names: &[String]) -> Option<RowItem> {
-    let marks: Vec<(CurveStyle, f64)> = quiet
-        .iter()
-        .filter_map(|item| if let RowKind::Mark(style, value, _) = item.kind { Some((style, value)) } else { None })
-        .collect();
-    let values = || marks.iter().map(|(_, value)| *value);
-    let range = [values().reduce(f64::min)?, values().reduce(f64::max)?];
-    let range = |name: String| RowItem::new(format!("{name}, range"), RowKind::Range(RECORD, range));
-    let item = match names {
-        [name] => RowItem::new(name, RowKind::Mark(CurveStyle { colour: QUIET, ..marks[0].0 }, marks[0].1, None)),
-        [first, second] => range(format!("{first} and {second}")),
-        _ => range(counted(names.len() as u64, "other")),
-    };
-    Some(RowItem { place: RowPlace::Below, ..item.clipped_if_far() })
+/// Marks that are not highlighted: those of one or two methods in grey, those of more as a range.
+fn pale(quiet: Vec<RowItem>, names: &[String]) -> Vec<RowItem> {
+    let below = |item: RowItem| RowItem { place: RowPlace::Below, ..item.clipped_if_far() };
+    let marks = quiet.into_iter().filter_map(|item| {
+        let RowKind::Mark(style, value, _) = item.kind else { return None };
+        let kind = RowKind::Mark(CurveStyle { colour: UNHIGHLIGHTED, ..style }, value, None);
+        Some((value, below(RowItem { kind, number: None, ..item })))
+    });
+    let (values, marks): (Vec<f64>, Vec<RowItem>) = marks.unzip();
+    let ends = values.iter().copied().reduce(f64::min).zip(values.iter().copied().reduce(f64::max));
+    match ends {
+        Some((least, most)) if names.len() > 2 => {
+            let name = format!("{}, range", counted(names.len() as u64, "other"));
+            vec![below(RowItem::new(name, RowKind::WideInterval(RECORD, [least, most])))]
+        }
+        _ => marks,
+    }
 }
 
 /// Pales the rows that are not highlighted, and writes the values of all highlighted methods; of many rows, only in
@@ -124,7 +126,7 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
         let limit = limit.filter(|_| over_bound);
         for item in row {
             let RowKind::Mark(style, value, _) = &mut item.kind else { continue };
-            let is_quiet = style.colour == QUIET;
+            let is_quiet = style.colour == UNHIGHLIGHTED;
             if !(is_quiet || is_long && is_pale) {
                 item.number = Some(match limit {
                     Some(limit) => format!("{}×", significant(*value / limit, 2)),

@@ -5,7 +5,7 @@ use identify::StopReason;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
-use document::method::{MethodEntry, Status};
+use document::method::{MethodEntry, MethodStatus};
 use trial::Quantity;
 
 /// One row per method; `validated` names the records of the validation columns.
@@ -13,15 +13,18 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     let remarks = entries.iter().any(|entry| !remark(entry).is_empty());
     let mut head = TableHead::default().texts(["method"]);
     for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
-        head = head.numbers([symbol]).unit(unit).interval();
+        head = head.numbers([symbol]).unit(unit).interval95();
     }
     head = head.numbers(["rms ψ"]).unit("deg").numbers(validated.iter().map(|name| format!("on {name}"))).unit("deg");
     let mut table = Table::new(head.texts(remarks.then_some("remark")));
     for entry in entries {
         let mut cells = vec![entry.method.clone()];
         match &entry.parameters {
-            Some(parameters) => cells
-                .extend([&parameters.k_per_s, &parameters.t_s, &parameters.delta_r_deg].into_iter().flat_map(estimate)),
+            Some(parameters) => cells.extend(
+                [&parameters.k_per_s, &parameters.t_s, &parameters.delta_r_deg]
+                    .into_iter()
+                    .flat_map(estimate_and_interval),
+            ),
             None => cells.extend((0..6).map(|_| MISSING.to_owned())),
         }
         let rmse = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 3));
@@ -37,7 +40,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
 const DIGITS: i32 = 5;
 
 /// Value and interval, with the digits that the interval supports, at most five significant ones.
-pub fn estimate(quantity: &Quantity) -> [String; 2] {
+pub fn estimate_and_interval(quantity: &Quantity) -> [String; 2] {
     let value = quantity.value;
     if !value.is_finite() {
         return [MISSING.to_owned(), MISSING.to_owned()];
@@ -55,9 +58,9 @@ pub fn estimate(quantity: &Quantity) -> [String; 2] {
 
 fn remark(entry: &MethodEntry) -> String {
     match (entry.status, &entry.failure) {
-        (Status::Failed, Some(failure)) => format!("failed: {}", failure.replace('-', " ")),
-        (Status::Failed, None) => "failed".to_owned(),
-        (Status::Ok, _) => {
+        (MethodStatus::Failed, Some(failure)) => format!("failed: {}", failure.replace('-', " ")),
+        (MethodStatus::Failed, None) => "failed".to_owned(),
+        (MethodStatus::Ok, _) => {
             let at_bound = entry.stop.as_deref() == Some(StopReason::RangeLimit.as_str());
             let remarks = [(entry.course_unstable, "course-unstable"), (at_bound, "at a bound")];
             let holding: Vec<&str> = remarks.iter().filter(|(holds, _)| *holds).map(|(_, remark)| *remark).collect();
@@ -76,7 +79,7 @@ mod tests {
 
     #[test]
     fn digits_follow_the_interval_and_stop_at_five() {
-        let shown = |value, ci95| estimate(&Quantity { value, sd: None, ci95 });
+        let shown = |value, ci95| estimate_and_interval(&Quantity { value, sd: None, ci95 });
         assert_eq!(shown(0.18713, Some([0.166, 0.215])), ["0.187", "[0.166, 0.215]"]);
         assert_eq!(shown(0.1748075, Some([0.1748052, 0.1748099])), ["0.17481", "[0.17481, 0.17481]"]);
         assert_eq!(shown(-0.7, Some([-5.83, 4.42])), ["−0.7", "[−5.8, 4.4]"]);

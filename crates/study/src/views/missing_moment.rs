@@ -43,7 +43,7 @@ fn percent(share: Option<f64>) -> String {
 fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], explained: PlotCurve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
-        Layer::band("95 % band", [lower, upper], HEADING, 0.2).within(0.3),
+        Layer::band("95 % band", [lower, upper], HEADING, 0.2).widening_at_most(0.3),
         Layer::line("missing moment (over a channel: its curve)", middle, Pen::new(HEADING)),
     ];
     let together = |names: &String| if names.contains(", ") { format!("{names} together") } else { names.clone() };
@@ -52,29 +52,29 @@ fn banded(explanation: Option<&String>, [middle, lower, upper]: [PlotCurve; 3], 
 }
 
 /// Panels of the missing moment of a record: over time, and over the channels on which it depends.
-pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
+pub fn missing_moment_figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panels {
     let cause = entry.explanation.as_ref();
     let over = |x: AxisSpec, height: f64, reach: f64, layers: Vec<Layer>| {
-        let moment = AxisSpec::decimal("moment [° rudder]").within(reach, Some(0.0));
+        let moment = AxisSpec::decimal("moment [° rudder]").limited_around(reach, Some(0.0));
         PanelGroup::over(x, vec![(PanelRow::zeroed(moment, height), layers)])
     };
     let over_time = |values: &Vec<f64>| PlotCurve::new(curves.time.clone(), values.clone());
-    let [lower, upper] = &curves.band;
-    let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained));
+    let [lower, upper] = &curves.band95;
+    let moment = banded(cause, [&curves.moment, lower, upper].map(over_time), over_time(&curves.explained_moment));
     let mut groups = vec![over(AxisSpec::time(), 0.24, REACHES[0], moment)];
     let channels = entry.channel_curves.iter().zip(&curves.by_channel);
     let (shown, undrawn): (Vec<_>, Vec<_>) = channels.partition(|(channel, _)| channel.is_significant);
     groups.extend(shown.into_iter().take(MAX_PANELS).map(
         |(channel_entry, channel): (&ChannelCurveEntry, &ChannelCurve)| {
-            let ChannelCurve { moment, half_width, .. } = channel;
-            let curve = |y: Vec<f64>| PlotCurve::new(channel.x.clone(), y);
-            let edge = |side: f64| curve(moment.iter().zip(half_width).map(|(m, half)| m + side * half).collect());
+            let ChannelCurve { moment, half_width95, .. } = channel;
+            let curve = |y: Vec<f64>| PlotCurve::new(channel.abscissae.clone(), y);
+            let edge = |side: f64| curve(moment.iter().zip(half_width95).map(|(m, half)| m + side * half).collect());
             let rows = PlotCurve::new(channel.channel_values.clone(), curves.moment.clone());
-            let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.1)];
+            let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).widening_at_most(0.1)];
             layers.extend(banded(
                 cause,
                 [curve(moment.clone()), edge(-1.0), edge(1.0)],
-                curve(channel.explained.clone()),
+                curve(channel.explained_moment.clone()),
             ));
             let mut group = over(
                 AxisSpec::decimal(channel.channel.map_or_else(|| channel_entry.channel.clone(), title_of)),
@@ -96,8 +96,8 @@ pub fn figure(entry: &MissingMomentEntry, curves: &MissingMomentCurves) -> Panel
 }
 
 /// Finding: size of the moment of one record and the channel with the highest share of its variance.
-pub fn finding(entry: &MissingMomentEntry) -> String {
-    let (name, size) = (names::record(&entry.record), significant(entry.rms_rudder_deg, 2));
+pub fn missing_moment_finding(entry: &MissingMomentEntry) -> String {
+    let (name, size) = (names::record_name(&entry.record), significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
     let telling = entry.channel_curves.iter().find(|panel| panel.is_significant && panel.variance_share.is_some());
     match telling {
@@ -107,16 +107,20 @@ pub fn finding(entry: &MissingMomentEntry) -> String {
 }
 
 /// Caption: effects that have the shape of the moment of one record.
-pub fn sentence(entry: &MissingMomentEntry) -> String {
+pub fn missing_moment_sentence(entry: &MissingMomentEntry) -> String {
     let telling = || entry.channel_curves.iter().filter(|panel| panel.is_significant && panel.variance_share.is_some());
     let Some(best) = telling().next() else { return String::from("The moment depends on time alone.") };
-    let list =
-        |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { names::effects(ids, ", ") };
-    let mut text = format!("Effects inside the band over the {}: {}", best.channel, list(&best.inside));
+    let list = |ids: &[String]| {
+        if ids.is_empty() { "no effect on the list".to_owned() } else { names::effect_names(ids, ", ") }
+    };
+    let mut text = format!("Effects inside the band over the {}: {}", best.channel, list(&best.effects_inside_band));
     let count = telling().count();
     if count > 1 {
-        let _ =
-            write!(text, "; inside the bands of all {count} channels with a dependence: {}", list(&entry.inside_all));
+        let _ = write!(
+            text,
+            "; inside the bands of all {count} channels with a dependence: {}",
+            list(&entry.effects_inside_bands)
+        );
     }
-    text + if entry.unlisted { ". No effect of the list has this shape." } else { "." }
+    text + if entry.is_unlisted { ". No effect of the list has this shape." } else { "." }
 }

@@ -9,7 +9,7 @@ use report::figures::{CellMap, MapCell, Outline, Shades};
 use report::number;
 
 use super::key_figure::count_range;
-use super::tables::head_of_cells;
+use super::tables::cell_head;
 use super::tracing_table::has_several_traces;
 
 /// Kind of a ship by what it lacks: a known effect, an unknown moment, or nothing; for figures and files.
@@ -41,7 +41,7 @@ fn count(lines: &[JudgedLine], is_counted: impl Fn(Judgement, &MissingPhysics) -
 
 /// Finding, and map with a row for every ship and a column for every judgement; cells that differ in further axes are
 /// one row. `None` for a study that states no outcome.
-pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMap)> {
+pub fn outcome_map(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMap)> {
     let judged = judged(design, lines);
     let ships = grouped(judged.iter().copied(), |(line, physics): &JudgedLine| {
         let label = design.cells[line.cell].labels.first().map_or("", String::as_str);
@@ -55,7 +55,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
             value: share.map(|share| share.value),
             interval: share.and_then(|share| share.ci95),
             outline: judgement.is_right(lines[0].1).then_some(Outline::Correct),
-            trials: trials(lines),
+            trial_count: trials(lines),
         }
     };
     let right = |name: &str| {
@@ -67,15 +67,15 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
     let finding = format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"));
     let counts: Vec<u64> = ships.iter().map(|(_, lines)| trials(lines)).collect();
     let map = CellMap {
-        titles: [String::from("answer of the trace"), String::from("ship")],
+        axis_titles: [String::from("answer of the trace"), String::from("ship")],
         columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
         rows: ships.into_iter().map(|(name, _)| name).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells)],
         note: Some(format!(
             "Shares in per cent; {} trials of each kind of ship. Known: on the list of effects, in another formula. \
-             Unknown: on no list. Located: its dependence and its times are found. Disturbed: a random moment. Clean: \
-             noise alone. Empty: no trial.",
+             Unknown: on no list. Located: its dependence and its times are found. Unexplained: the residual is more than \
+             noise. Disturbed: a random moment. Clean: noise alone. Alias: an effect that acts alike. Empty: no trial.",
             count_range(&counts)
         )),
     };
@@ -83,7 +83,7 @@ pub fn figure(design: &Design, lines: &[TraceSummary]) -> Option<(String, CellMa
 }
 
 /// Legend of the judgements.
-pub fn legend() -> String {
+pub fn outcome_legend() -> String {
     format!(
         "*named right*: an effect that the ship has or stands for, and no other; *located right*: a moment with the \
          dependence of the truth and, where this has times, within {MAX_TIME_ERROR_S:.0} s of a change (its beginning, end or \
@@ -96,9 +96,9 @@ pub fn legend() -> String {
 }
 
 /// Counts of every cell: `outcomes.csv`; `None` for a study that states no outcome.
-pub fn table(design: &Design, summary: &Summary) -> Option<Table> {
+pub fn outcome_table(design: &Design, summary: &Summary) -> Option<Table> {
     let several = has_several_traces(design);
-    let head = head_of_cells(design).texts(several.then_some("method")).texts(["kind"]).counts(["trials", "failed"]);
+    let head = cell_head(design).texts(several.then_some("method")).texts(["kind"]).counts(["trials", "failed"]);
     let head = head.numbers(["right", "right lower 95", "right upper 95"]).unit("%");
     let mut table = Table::new(head.counts(Judgement::ALL.map(|judgement| judgement.to_string())));
     let judged = judged(design, &summary.tracing);

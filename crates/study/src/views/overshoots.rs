@@ -35,7 +35,7 @@ pub fn replayed_overshoots<'a>(document: &'a TraceDocument, curves: &TraceCurves
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
         // The limits are for ships; for a model, the record does not state the length of the full-size ship.
         let ship = record.particulars().filter(|ship| ship.length >= imo::MIN_LENGTH_M);
-        let criteria: Vec<_> = ship.map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
+        let criteria: Vec<_> = ship.map(|ship| imo::imo_criteria(&zigzag, ship)).unwrap_or_default();
         for (number, word) in [(0, "first"), (1, "second")] {
             let angle = |zigzag: &ZigZag| Some(to_deg(zigzag.overshoots_by_execute().nth(number)??.angle.value));
             let Some(measured) = angle(&zigzag) else { continue };
@@ -58,17 +58,21 @@ pub struct OvershootError {
     /// Number of measured overshoots.
     pub measured_count: usize,
     /// Number of measured overshoots without a replayed one.
-    pub missing: usize,
+    pub unreplayed_count: usize,
 }
 
 /// Errors of the overshoots of both replays, of held-out or of fitted records.
-pub fn errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
+pub fn overshoot_errors_before_after(all: &[ReplayedOvershoot], held_out: bool) -> [OvershootError; 2] {
     let judged = || all.iter().filter(|overshoot| overshoot.record.held_out == held_out);
     [0, 1].map(|model| {
         let distance = |overshoot: &ReplayedOvershoot| Some((overshoot.replayed[model]? - overshoot.measured).abs());
         let mut distances: Vec<f64> = judged().filter_map(distance).collect();
         let (measured, replayed) = (judged().count(), distances.len());
-        OvershootError { median_deg: median(&mut distances), measured_count: measured, missing: measured - replayed }
+        OvershootError {
+            median_deg: median(&mut distances),
+            measured_count: measured,
+            unreplayed_count: measured - replayed,
+        }
     })
 }
 
@@ -99,19 +103,20 @@ fn note(all: &[ReplayedOvershoot]) -> String {
 
 /// Figure of the first two overshoots of every zig-zag and of both replays; if some records have more rudder than the
 /// fitted records, the rows of all others are shaded; `None` if no record is a zig-zag.
-pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
+pub fn overshoot_figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<PageFigure> {
     let held_out = document.records.iter().filter(|record| record.held_out).count();
-    let errors = errors_before_after(all, held_out > 0);
+    let errors = overshoot_errors_before_after(all, held_out > 0);
     let medians = errors.iter().map(|error| RowItem {
         number: Some(error.median_deg.map_or_else(|| MISSING.to_owned(), degrees_text)),
         ..RowItem::new("", RowKind::Heading)
     });
     let rows = all.iter().map(row_items).chain([medians.collect()]).collect();
-    let column = RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, zero: true, ..RowsColumn::default() };
+    let column =
+        RowsColumn { x: AxisSpec::decimal("overshoot [°]"), rows, has_zero_line: true, ..RowsColumn::default() };
     let name = |overshoot: &ReplayedOvershoot| {
         let used = if overshoot.record.held_out { "" } else { " (fitted)" };
         let place = if overshoot.word == "first" { "1st" } else { "2nd" };
-        format!("{}: {place}{used}", names::record(&overshoot.record.name))
+        format!("{}: {place}{used}", names::record_name(&overshoot.record.name))
     };
     let seen = document.ship.validity_range.rudder_rad;
     let (within, beyond): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(|&place| all[place].rudder_rad <= seen);
@@ -123,13 +128,14 @@ pub fn figure(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Option<Pag
             .chain([String::from(if held_out > 0 { "median, not fitted" } else { "median" })])
             .collect(),
         columns: vec![column],
-        shaded,
+        shaded_rows: shaded,
         note: Some(note(all)),
         ..NamedRows::default()
     };
     let error_words = |error: OvershootError| {
         let off = error.median_deg.map_or_else(|| MISSING.to_owned(), degrees_text);
-        let missing = if error.missing > 0 { format!(" ({} missing)", error.missing) } else { String::new() };
+        let missing =
+            if error.unreplayed_count > 0 { format!(" ({} missing)", error.unreplayed_count) } else { String::new() };
         (off, missing, error.measured_count)
     };
     let [(before, no_before, count), (after, no_after, _)] = errors.map(error_words);

@@ -16,7 +16,7 @@ pub const MARKDOWN_REPORT_FILE: &str = "report.md";
 pub const HTML_REPORT_FILE: &str = "report.html";
 
 /// File stem of the key figure of a page.
-pub const KEY_FIGURE: &str = "hero";
+pub const KEY_FIGURE_STEM: &str = "hero";
 
 /// Writes a page in both forms with its figures; without a theme only texts and tables.
 ///
@@ -29,7 +29,7 @@ pub fn write_page(folder: &ResultFolder, page: Page, theme: Option<&Theme>) -> R
         draw(folder, &page, theme)?;
     }
     let markdown = page.to_markdown();
-    let browser = html::page(&markdown, &page.folded_titles(), &|stem| FigureFiles::written(folder.path(), stem));
+    let browser = html::page(&markdown, &page.folded_titles(), &|stem| FigureFiles::from_folder(folder.path(), stem));
     folder.write(MARKDOWN_REPORT_FILE, markdown)?;
     folder.write(HTML_REPORT_FILE, browser.on("make", &folder.path().join(HTML_REPORT_FILE))?)
 }
@@ -62,7 +62,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
              or a style of its own for this page"
         )));
     }
-    run_all(figures.par_iter().map(|PageFigure { stem, finding, plot, .. }| {
+    run_all_in_parallel(figures.par_iter().map(|PageFigure { stem, finding, plot, .. }| {
         let figure = plot.draw(finding, theme);
         folder.write(&format!("{stem}.svg"), figure.svg())?;
         folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
@@ -70,7 +70,7 @@ fn draw(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure
 }
 
 /// Runs all work in parallel and fails with the first failure in order, not in time.
-pub fn run_all(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+pub fn run_all_in_parallel(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
     work.collect::<Vec<_>>().into_iter().collect()
 }
 
@@ -89,6 +89,6 @@ mod tests {
             }
             _ => Ok(()),
         });
-        assert_eq!(run_all(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
+        assert_eq!(run_all_in_parallel(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
     }
 }

@@ -20,7 +20,7 @@ const MIN_MAP_POINTS: usize = 3;
 
 /// Maps of the errors of K, of T and of the validation for a design of two axes: stem, title of the quantity, and map
 /// of each; empty if an axis has fewer than three points.
-pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
+pub fn error_heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, CellMap)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].clone()));
     if design.axes.len() != 2 {
         return Vec::new();
@@ -52,7 +52,7 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
             (Some(design.methods[method].label.clone()), (0..rows.len()).map(row).collect())
         };
         let map = CellMap {
-            titles: [design.axes[1].clone(), design.axes[0].clone()],
+            axis_titles: [design.axes[1].clone(), design.axes[0].clone()],
             columns: columns.clone(),
             rows: rows.clone(),
             shades: Shades::Range(TickRule::Logarithmic, title.clone()),
@@ -72,10 +72,10 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cel
 const MAX_SPREADS: f64 = 4.0;
 
 /// Distributions of the errors in the cells whose detail was requested, by cell index; none for fewer than ten trials.
-pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
+pub fn error_violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
     type Of = fn(&MethodDetail) -> &Option<summary::ErrorDensity>;
     let column = |detail: &CellDetail, title: &str, density_of: Of| RowsColumn {
-        x: AxisSpec::decimal(title).within(MAX_SPREADS, Some(0.0)),
+        x: AxisSpec::decimal(title).limited_around(MAX_SPREADS, Some(0.0)),
         rows: (detail.methods.iter().enumerate())
             .map(|(method, detail)| {
                 let style = curve_origin(design, method).style();
@@ -83,7 +83,7 @@ pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, NamedRows)> {
                 density_of(detail).as_ref().map(|density| RowItem::new("", violin(density))).into_iter().collect()
             })
             .collect(),
-        zero: true,
+        has_zero_line: true,
         ..RowsColumn::default()
     };
     let of_cell = |detail: &CellDetail| {
@@ -111,10 +111,10 @@ const FAR: f64 = 3.0;
 /// clouds.
 pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
     let of_cell = |detail: &CellDetail| {
-        let covariance_bound = design.cells[detail.cell].bound_percent2;
+        let covariance_bound = design.cells[detail.cell].cramer_rao_percent2;
         let bound = covariance_bound.map(|covariance| PlotCurve::contour95([0.0; 2], covariance));
         let panel = |(method, detail): (usize, &MethodDetail)| {
-            let (origin, cloud) = (curve_origin(design, method), detail.cloud.as_ref());
+            let (origin, cloud) = (curve_origin(design, method), detail.joint_errors.as_ref());
             let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
             let ellipse = cloud
                 .map_or_else(PlotCurve::default, |cloud| PlotCurve::contour95(cloud.centre.into(), cloud.covariance));
@@ -124,27 +124,29 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
             ];
             let pen = Pen { dash: DOTTED, ..Pen::from_origin(&CurveOrigin::Bound) };
             let name = "Cramér–Rao bound, 95 %";
-            layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
+            layers.extend(
+                bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).widening_at_most(REACH)),
+            );
             let detail = covariance_bound.zip(cloud).map(|(bound, cloud)| {
                 let sd_over_bound = (cloud.covariance[1][1] / bound[1][1]).sqrt();
                 format!("T {}× the bound", significant(sd_over_bound, 3))
             });
-            LayeredPanel { head: Some(design.methods[method].label.clone()), detail, layers }
+            LayeredPanel { head: Some(design.methods[method].label.clone()), result: detail, layers }
         };
         let spread = |detail: &MethodDetail| {
-            detail.cloud.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())
+            detail.joint_errors.as_ref().map_or(0.0, |cloud| (cloud.covariance[0][0] + cloud.covariance[1][1]).sqrt())
         };
         let usual = median(&mut detail.methods.iter().map(spread).filter(|spread| *spread > 0.0).collect::<Vec<_>>());
         let is_near = |(_, detail): &(usize, &MethodDetail)| usual.is_none_or(|usual| spread(detail) <= FAR * usual);
         let (near, far): (Vec<_>, Vec<_>) = detail.methods.iter().enumerate().partition(is_near);
         let far: Vec<&str> = far.iter().map(|(method, _)| design.methods[*method].label.as_str()).collect();
         let count = near.len();
-        let axis = |index: &str| AxisSpec::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
+        let axis = |index: &str| AxisSpec::decimal(format!("error of {} [%]", symbol(index))).limited_about_zero(REACH);
         let panels = near.into_iter().map(panel).collect();
         let across = if count == 4 { 2 } else { count.clamp(1, 3) };
         let multiples = PanelGroup::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
         let points =
-            detail.methods.iter().flat_map(|fit| &fit.cloud).map(|cloud| cloud.points.len()).max().unwrap_or(0);
+            detail.methods.iter().flat_map(|fit| &fit.joint_errors).map(|cloud| cloud.points.len()).max().unwrap_or(0);
         let trials = summary.performance(detail.cell, 0).map_or(0, |performance| performance.trials);
         let mut note = format!(
             "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}. 95 % \
@@ -155,8 +157,8 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
         }
-        let data = Panels { note: Some(note), ..Panels::new(PanelGroup { zero: true, ..multiples }) };
-        let is_drawn = detail.methods.iter().any(|detail| detail.cloud.is_some());
+        let data = Panels { note: Some(note), ..Panels::new(PanelGroup { has_zero_line: true, ..multiples }) };
+        let is_drawn = detail.methods.iter().any(|detail| detail.joint_errors.is_some());
         is_drawn.then_some((detail.cell, bound.is_some(), data))
     };
     summary.details.iter().filter_map(of_cell).collect()
@@ -215,7 +217,7 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].as_str())).len();
     let longest = (0..design.axes.len()).max_by_key(|&axis| labels(axis));
     let name = |cell: usize| {
-        let CellFacts { labels, trials, .. } = &design.cells[cell];
+        let CellFacts { labels, stored_replicates: trials, .. } = &design.cells[cell];
         match longest.filter(|_| design.cells.len() > MAX_ROWS) {
             Some(axis) => labels[axis].clone(),
             // Records of measured rows differ in number.
@@ -245,7 +247,7 @@ fn centre(mut values: Vec<f64>, outer: usize) -> Option<(f64, [f64; 2])> {
 /// Row items of a prediction: the range as a bar, and the value as a mark beside it.
 fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<RowItem> {
     let style = origin.style();
-    let range = RowItem::new(origin.label(), RowKind::Range(style.colour, ends));
+    let range = RowItem::new(origin.label(), RowKind::WideInterval(style.colour, ends));
     let mark = RowItem::new(origin.label(), RowKind::Mark(style, value, None));
     vec![RowItem { place: RowPlace::Below, ..range }, RowItem { place: RowPlace::SameLine, ..mark }]
 }
@@ -253,7 +255,8 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
 /// Sentence on the maximum half width over the cells of the 95 % interval of a share of 90 %. Characteristics of a
 /// trial may be correlated, so each trial counts once. Measured records are not independent and have no interval.
 fn certainty(design: &Design) -> String {
-    let trials = design.cells.iter().map(|cell| cell.trials.end - cell.trials.start).min().unwrap_or(0);
+    let trials =
+        design.cells.iter().map(|cell| cell.stored_replicates.end - cell.stored_replicates.start).min().unwrap_or(0);
     if design.is_measured() {
         return String::from(" Records of one ship are not independent: no intervals.");
     }
@@ -290,17 +293,17 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRo
         let columns: Vec<_> = (0..design.methods.len()).map(of_method).collect();
         let row = |row: usize| columns.iter().flat_map(|column| column[row].clone()).collect();
         let rows = (0..rows.len() + usize::from(several)).map(row).collect();
-        RowsColumn { x, rows, lines, ..RowsColumn::default() }
+        RowsColumn { x, rows, vertical_lines: lines, ..RowsColumn::default() }
     };
     let names = rows.iter().map(|(name, _)| name.clone());
     let names = several.then(|| String::from(ALL_CELLS_ROW)).into_iter().chain(names).collect();
     let inside = |line: &PredictionSummary| 100.0 * line.inside_share();
-    let width = |line: &PredictionSummary| 100.0 * line.relative_to_truth(line.width());
+    let width = |line: &PredictionSummary| 100.0 * line.relative_to_truth(line.mean_interval_width());
     (!summary.predictions.is_empty()).then(|| NamedRows {
         names,
         columns: vec![
             column(
-                AxisSpec::new("90 % intervals that hold [%]", TickRule::Percent),
+                AxisSpec::new("90 % intervals that contain the truth [%]", TickRule::Percent),
                 inside,
                 0,
                 vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],

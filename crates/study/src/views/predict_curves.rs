@@ -12,7 +12,7 @@ use crate::records::unique_names;
 use campaign::scenario::name::slug;
 
 /// Unique file stem for every manoeuvre and record.
-pub fn stems(document: &PredictDocument) -> Vec<String> {
+pub fn manoeuvre_stems(document: &PredictDocument) -> Vec<String> {
     let kinds = document.manoeuvres.iter().map(|prediction| {
         let kind = prediction.kind.to_string();
         // A slug has no minus sign.
@@ -22,9 +22,9 @@ pub fn stems(document: &PredictDocument) -> Vec<String> {
 }
 
 /// Curves of every manoeuvre and replay: stem and table, angles in degrees.
-pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
+pub fn curve_tables(document: &PredictDocument) -> Vec<(String, String)> {
     let mut tables = Vec::new();
-    let mut stems = stems(document).into_iter();
+    let mut stems = manoeuvre_stems(document).into_iter();
     for (prediction, stem) in document.manoeuvres.iter().zip(stems.by_ref()) {
         let table = match prediction.kind {
             Manoeuvre::Spiral { .. } => steady_turns(&prediction.curves.steady),
@@ -33,7 +33,7 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
         tables.push((stem, table));
     }
     for (replayed, stem) in document.replays.iter().zip(stems) {
-        tables.push((stem, bands(&replayed.heading, Some(&replayed.measured))));
+        tables.push((stem, bands(&replayed.heading_band, Some(&replayed.measured_heading))));
     }
     tables
 }

@@ -15,14 +15,14 @@ use report::figures::{
     AxisSpec, Layer, LayerKind, NamedRows, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind, RowPlace, RowsColumn,
 };
 use report::number::{counted, fixed, significant};
-use report::palette::{BEFORE, CurveStyle, HEADING, INK, Marker, SOLID};
+use report::palette::{CurveStyle, HEADING, INK, MODEL_BEFORE, Marker, SOLID};
 use report::{PageFigure, PlotCurve};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 use trial::imo::CriterionUnit;
 
 use super::circle::{self, CircleTrack, DIMENSION_LINES_NOTE, predicted_pen};
-use super::predict_curves::stems;
+use super::predict_curves::manoeuvre_stems;
 use super::record_figures::{rudder, stability, steady_turns};
 
 /// Approximate number of ship symbols along a track.
@@ -30,20 +30,20 @@ const DRAWN_HEADINGS: usize = 12;
 
 /// All figures, in the order of the page.
 pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
-    let stems = stems(document);
+    let stems = manoeuvre_stems(document);
     let mut figures = Vec::new();
     for (prediction, stem) in document.manoeuvres.iter().zip(&stems) {
         figures.extend(of_manoeuvre(document, prediction, stem));
     }
     for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
         let caption =
-            format!("{}: the record and the replay of its rudder, without a fit.", names::record(&replayed.name));
+            format!("{}: the record and the replay of its rudder, without a fit.", names::record_name(&replayed.name));
         figures.push(PageFigure::new(stem.as_str(), inside(replayed), caption, replay(replayed)));
         figures.extend(replayed.tracks.as_ref().map(|tracks| {
             let caption = format!(
                 "{}: recorded and predicted track of the turn from the execute on; nothing is fitted to it, and its current is removed. \
                  {DIMENSION_LINES_NOTE} Thin: {} drawn ships.",
-                names::record(&replayed.name),
+                names::record_name(&replayed.name),
                 tracks.drawn.len()
             );
             PageFigure::new(format!("{stem}-track"), diameter(replayed), caption, turn(replayed, tracks))
@@ -94,14 +94,19 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
     let mut figures = vec![PageFigure::new(
         stem,
-        first_figures(prediction),
+        first_characteristics_finding(prediction),
         caption,
         bands(&prediction.curves.heading, None, steered),
     )];
     if passage.is_some_and(|passage| passage.track().is_some()) {
         let caption =
             format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.curves.tracks.len());
-        figures.push(PageFigure::new(format!("{stem}-track"), first_figures(prediction), caption, track(prediction)));
+        figures.push(PageFigure::new(
+            format!("{stem}-track"),
+            first_characteristics_finding(prediction),
+            caption,
+            track(prediction),
+        ));
     }
     figures
 }
@@ -112,8 +117,9 @@ const MIN_PROBABILITY: f64 = 0.95;
 /// Maximum number of characteristics in a finding.
 const MAX_NAMED_FIGURES: usize = 2;
 
-/// First characteristics of a manoeuvre, with their 90 % intervals over the drawn ships.
-fn first_figures(prediction: &Prediction) -> String {
+/// Finding of the figure of a manoeuvre: its first [`MAX_NAMED_FIGURES`] characteristics, median and 90 % interval over
+/// the drawn ships; without characteristics, that no drawn ship completes it.
+fn first_characteristics_finding(prediction: &Prediction) -> String {
     let figure_words = |(name, figure): (&String, &PredictedFigure)| {
         let [low, high] = figure.interval.ci90.map(|end| significant(end, 3));
         let (quantity, unit) = names::figure_of_merit(name);
@@ -130,7 +136,7 @@ fn first_figures(prediction: &Prediction) -> String {
 pub fn heading_error_phrase(replayed: &RecordReplay) -> String {
     let error = format!("heading error {}° (rms)", significant(replayed.heading_rmse_deg, 3));
     let turned = |all: &[f64]| all.last().zip(all.first()).map_or(0.0, |(last, first)| last - first);
-    let [measured, predicted] = [turned(&replayed.measured), turned(&replayed.heading.most_probable)];
+    let [measured, predicted] = [turned(&replayed.measured_heading), turned(&replayed.heading_band.most_probable)];
     if measured.abs() < TAU {
         return error;
     }
@@ -165,7 +171,7 @@ fn bands(heading: &BandedCurve, recorded: Option<PlotCurve>, rudder_deg: PlotCur
     let quantile = |place: usize| curve(heading.quantiles.iter().map(|row| to_deg(row[place])).collect());
     let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);
     let mut layers =
-        vec![band("90 % of the drawn ships", [0, 4], BANDS[0]).within(1.0), band("50 %", [1, 3], BANDS[1])];
+        vec![band("90 % of the drawn ships", [0, 4], BANDS[0]).widening_at_most(1.0), band("50 %", [1, 3], BANDS[1])];
     layers.extend(recorded.map(|heading| Layer::new("recorded heading", heading, LayerKind::Record)));
     let pen = Pen::new(HEADING).width(1.2);
     layers.push(Layer::line("most probable ship", curve(degrees(&heading.most_probable)), pen));
@@ -175,9 +181,10 @@ fn bands(heading: &BandedCurve, recorded: Option<PlotCurve>, rudder_deg: PlotCur
 }
 
 fn replay(replayed: &RecordReplay) -> Panels {
-    let recorded = PlotCurve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
-    let rudder = PlotCurve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
-    bands(&replayed.heading, Some(recorded), rudder)
+    let recorded = PlotCurve::new(replayed.heading_band.time.as_slice(), degrees(&replayed.measured_heading));
+    let rudder =
+        PlotCurve::new(replayed.rudder_times_and_angles[0].as_slice(), degrees(&replayed.rudder_times_and_angles[1]));
+    bands(&replayed.heading_band, Some(recorded), rudder)
 }
 
 /// Curve of a track, north over east, from points of north and east.
@@ -188,16 +195,17 @@ fn from_above(track: &[[f64; 2]]) -> PlotCurve {
 
 /// Recorded turn and the median of its prediction.
 fn turn(replayed: &RecordReplay, tracks: &TurnTracks) -> Panels {
-    let drawn = |track: &Vec<[f64; 2]>| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.15);
+    let drawn =
+        |track: &Vec<[f64; 2]>| Layer::line("drawn ships", from_above(track), Pen::pale()).widening_at_most(0.15);
     let figures = |of: fn(&ComparedFigure) -> f64| {
         let length = replayed.figures.get("advance_m").zip(replayed.figures.get("advance_lengths"));
         let length = length.map(|(metres, lengths)| metres.measured / lengths.measured);
         let of_name = |name| replayed.figures.get(name).map(of).zip(length).map(|(metres, length)| metres / length);
         ["advance_m", "transfer_m", "tactical_diameter_m"].map(of_name)
     };
-    let circle = |name: &str, track: &[[f64; 2]], figures, pen| {
+    let circle = |name: &str, track: &[[f64; 2]], lengths, pen| {
         let (name, track) = (name.to_owned(), from_above(track));
-        CircleTrack { name, track, figures, pen }
+        CircleTrack { name, track, lengths, pen }
     };
     let circles = [
         circle("measured", &tracks.measured, figures(|figure| figure.measured), Pen::new(INK).width(1.8)),
@@ -221,7 +229,7 @@ fn track(prediction: &Prediction) -> Panels {
         .curves
         .tracks
         .iter()
-        .map(|track| Layer::line("drawn ships", from_above(track), Pen::pale()).within(0.35));
+        .map(|track| Layer::line("drawn ships", from_above(track), Pen::pale()).widening_at_most(0.35));
     let layers = drawn.chain([
         Layer::line("most probable ship", from_above(places_m), Pen::new(HEADING).width(1.2)),
         Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
@@ -238,17 +246,17 @@ fn intervals(unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> NamedRows {
     let x = AxisSpec::decimal(format!("predicted value [{unit}]"));
     NamedRows {
         names,
-        columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],
+        columns: vec![RowsColumn { x, rows, has_zero_line: true, ..RowsColumn::default() }],
         ..NamedRows::default()
     }
 }
 
 fn interval(predicted: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
-    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
+    let style = CurveStyle { colour: HEADING, marker: Marker::Circle, dash: SOLID, is_hollow: extrapolated };
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
-        RowItem::new("90 %", RowKind::Thin(predicted.ci90)).clipped_if_far(),
-        RowItem::new("50 % of the drawn ships", RowKind::Range(HEADING, predicted.ci50)),
+        RowItem::new("90 %", RowKind::ThinInterval(predicted.ci90)).clipped_if_far(),
+        RowItem::new("50 % of the drawn ships", RowKind::WideInterval(HEADING, predicted.ci50)),
         RowItem::new(name, RowKind::Mark(style, predicted.median, None)),
     ]
 }
@@ -265,7 +273,7 @@ fn is_overshoot(name: &str) -> bool {
 
 /// Row for every overshoot of a replayed record: the predicted interval, and below it the measured angle.
 fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
-    let style = CurveStyle { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
+    let style = CurveStyle { colour: MODEL_BEFORE, marker: Marker::Diamond, dash: SOLID, is_hollow: true };
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| is_overshoot(name)) {
@@ -273,7 +281,7 @@ fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
             // Below the bar, so that a nearby median stays visible.
             let item = RowItem::new("measured", RowKind::Mark(style, figure.measured, None));
             items.push(RowItem { place: RowPlace::Shifted(0.34), ..item });
-            rows.push((format!("{} {}", names::record(&replayed.name), names::figure_of_merit(name).0), items));
+            rows.push((format!("{} {}", names::record_name(&replayed.name), names::figure_of_merit(name).0), items));
         }
     }
     rows

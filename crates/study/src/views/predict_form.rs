@@ -4,7 +4,7 @@ use askama::Template;
 use campaign::statistics::grouped;
 use predict::form::{ImoFormEntry, MAX_DECIMALS, MAX_TRACK_REACH_LENGTHS, STOPPING_SECTION};
 use predict::interval::PredictionInterval;
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::number::{fixed, significant};
 use report::{Page, PlacedFigures, Table, TableHead};
 
@@ -41,7 +41,7 @@ struct FormPage<'a> {
 }
 
 /// Tables of the form: declared entries under the headings of its parts, and the tests.
-pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
+pub fn form_tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
     let sections = grouped(entries, |entry| entry.section.as_str()).into_iter();
     let is_declared = |(section, section_entries): &(&str, Vec<&ImoFormEntry>)| {
         section_entries.iter().all(|entry| entry.side.is_none()) && *section != STOPPING_SECTION
@@ -71,7 +71,7 @@ pub fn tables(entries: &[ImoFormEntry]) -> (Vec<(&str, Table)>, Table) {
 }
 
 /// Table of the measured criteria of MSC.137(76), to both sides.
-pub fn criteria(entries: &[ImoFormEntry]) -> Table {
+pub fn form_criterion_table(entries: &[ImoFormEntry]) -> Table {
     let head = TableHead::default().texts(["test", "result"]).numbers(["to port", "to starboard"]).texts(["unit"]);
     let mut table = Table::new(head.numbers(["limit"]).texts(["kept"]));
     let tests = entries.iter().filter(|entry| entry.side.is_some());
@@ -100,7 +100,7 @@ pub fn criteria(entries: &[ImoFormEntry]) -> Table {
 
 /// Page of the form.
 pub fn page(entries: &[ImoFormEntry], remarks: &[String]) -> Page {
-    let (declared, tested) = tables(entries);
+    let (declared, tested) = form_tables(entries);
     Page::new(FormPage { declared, tested, form_remarks: remarks, mark: "##" }.render(), PlacedFigures::<()>::default())
 }
 

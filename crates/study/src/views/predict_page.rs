@@ -5,7 +5,7 @@ use document::names;
 use predict::document::{OtherLoading, file_names};
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::number::{counted, fixed, with_uncertainty};
 use report::{Page, PlacedFigures};
 use ship::angle::to_deg;
@@ -15,7 +15,7 @@ use trial::{Manoeuvre, imo};
 use super::{predict_figures, predict_tables};
 
 /// Text above the table: models, number of draws, weather, hull, range of validity, incomplete manoeuvres.
-pub fn summary(document: &PredictDocument) -> String {
+pub fn text_above_table(document: &PredictDocument) -> String {
     let weather = match document.calm {
         true => "in a calm",
         false => "in the weather of the records",
@@ -60,13 +60,13 @@ pub fn summary(document: &PredictDocument) -> String {
 }
 
 /// Text below the table on the screen: replays, corrections to another loading, IMO criteria.
-pub fn below_table(document: &PredictDocument) -> String {
+pub fn text_below_table(document: &PredictDocument) -> String {
     let mut below_table = String::new();
     for replayed in &document.replays {
-        below_table += &format!("\n{}: {}\n", names::record(&replayed.name), coverage(replayed));
+        below_table += &format!("\n{}: {}\n", names::record_name(&replayed.name), coverage(replayed));
     }
     if !document.corrected.is_empty() {
-        let table = predict_tables::corrected(document).to_text();
+        let table = predict_tables::loading_correction_table(document).to_text();
         below_table += &format!(
             "\nCorrected to {}, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n{}\n{table}",
             OtherLoading::name(document.load.as_ref()),
@@ -76,7 +76,7 @@ pub fn below_table(document: &PredictDocument) -> String {
     }
     if !document.imo.is_empty() {
         let caution = caution(document).map_or_else(String::new, |caution| format!("{caution}\n"));
-        below_table += &format!("\nIMO MSC.137(76)\n{caution}{}", predict_tables::criteria(document).to_text());
+        below_table += &format!("\nIMO MSC.137(76)\n{caution}{}", predict_tables::criterion_table(document).to_text());
     } else if (document.length_m.is_none() || document.speed_m_s.is_none()) && !document.manoeuvres.is_empty() {
         below_table +=
             "\nIMO: not compared, length and speed of the ship are unknown; give --length-m and --speed-kn\n";
@@ -138,13 +138,14 @@ struct PredictPage<'a> {
 pub fn page(document: &PredictDocument) -> Page {
     let mut figures = PlacedFigures::default();
     figures.put("all", predict_figures::figures(document));
-    let replay = |replay: &RecordReplay| format!("{}: {}", text(&names::record(&replay.name)), coverage(replay));
+    let replay =
+        |replay: &RecordReplay| format!("{}: {}", escaped_text(&names::record_name(&replay.name)), coverage(replay));
     let page = PredictPage {
         document,
-        lines: summary(document).lines().map(str::to_owned).collect(),
+        lines: text_above_table(document).lines().map(str::to_owned).collect(),
         caution: caution(document),
         replays: document.replays.iter().map(replay).collect(),
-        loading: text(&OtherLoading::name(document.load.as_ref())),
+        loading: escaped_text(&OtherLoading::name(document.load.as_ref())),
         corrected_from: corrected_from(document),
         doubts: doubts(document).collect(),
         figures,

@@ -8,14 +8,14 @@ use report::number::{MISSING, fixed, significant, with_uncertainty};
 use report::{Table, TableHead};
 
 /// Interval in brackets.
-pub fn bracket(ends: [f64; 2], decimals: usize) -> String {
+pub fn bracketed_interval(ends: [f64; 2], decimals: usize) -> String {
     format!("[{}, {}]", fixed(ends[0], decimals), fixed(ends[1], decimals))
 }
 
 /// Median and both intervals, with as many decimals as the width requires.
 fn cells(interval: &PredictionInterval) -> [String; 3] {
     let decimals = interval.decimals();
-    let [half, most] = [interval.ci50, interval.ci90].map(|ends| bracket(ends, decimals));
+    let [half, most] = [interval.ci50, interval.ci90].map(|ends| bracketed_interval(ends, decimals));
     [fixed(interval.median, decimals), half, most]
 }
 
@@ -37,9 +37,11 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
                 || MISSING.to_owned(),
                 |(source, share)| format!("{} {} %", source_name(source), fixed(100.0 * share, 0)),
             );
-            let in_some = || format!("reached in {} % of the draws", significant(100.0 * figure.defined, 3));
-            let remarks =
-                [figure.extrapolated.then(|| String::from("extrapolated")), (figure.defined < 1.0).then(in_some)];
+            let in_some = || format!("reached in {} % of the draws", significant(100.0 * figure.share_of_draws, 3));
+            let remarks = [
+                figure.extrapolated.then(|| String::from("extrapolated")),
+                (figure.share_of_draws < 1.0).then(in_some),
+            ];
             let remark = remarks.into_iter().flatten().collect::<Vec<_>>().join(", ");
             push(&kind.to_string(), name, &figure.interval, source, remark);
         }
@@ -49,7 +51,7 @@ pub fn characteristics_table(document: &PredictDocument) -> Table {
             let place = if figure.inside90 { "inside" } else { "outside" };
             let beyond = if replayed.extrapolated { ", extrapolated" } else { "" };
             let remark = format!("measured {}, {place}{beyond}", fixed(figure.measured, figure.interval.decimals()));
-            push(&names::record(&replayed.name), name, &figure.interval, MISSING.to_owned(), remark);
+            push(&names::record_name(&replayed.name), name, &figure.interval, MISSING.to_owned(), remark);
         }
     }
     table
@@ -61,7 +63,7 @@ fn source_name(source: &str) -> String {
 }
 
 /// Table of the IMO criteria.
-pub fn criteria(document: &PredictDocument) -> Table {
+pub fn criterion_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["criterion", "manoeuvre"]).numbers(["limit"]).texts(["unit"]);
     let head = head.numbers(["median"]).texts(["90 %"]).numbers(["passes"]).unit("%");
     let mut table = Table::new(head.texts(["remark"]));
@@ -82,12 +84,12 @@ pub fn criteria(document: &PredictDocument) -> Table {
 }
 
 /// Table of every characteristic that was corrected to another loading.
-pub fn corrected(document: &PredictDocument) -> Table {
+pub fn loading_correction_table(document: &PredictDocument) -> Table {
     let head = TableHead::default().texts(["record", "figure", "unit", "T measured"]).numbers(["F/B"]);
     let head = head.texts(["F/B 90 %"]).numbers(["R"]).texts(["R 50 %", "R 90 %", "remark"]);
     let mut table = Table::new(head);
     for correction in &document.corrected {
-        for (name, CorrectedFigure { measured, sd, factor, result, warnings, .. }) in &correction.figures {
+        for (name, CorrectedFigure { measured, sd, factor, corrected: result, warnings, .. }) in &correction.figures {
             let ([factor, _, of_factor], [median, half, most]) = (cells(factor), cells(result));
             let measured = match sd {
                 Some(_) => with_uncertainty(*measured, *sd),
@@ -109,6 +111,6 @@ mod tests {
     #[test]
     fn an_interval_has_the_decimals_of_its_width() {
         let interval = PredictionInterval { median: 6.35, ci50: [6.3, 6.4], ci90: [6.2, 6.5] };
-        assert_eq!(bracket(interval.ci90, interval.decimals()), "[6.20, 6.50]");
+        assert_eq!(bracketed_interval(interval.ci90, interval.decimals()), "[6.20, 6.50]");
     }
 }

@@ -1,11 +1,13 @@
 //! Sensitivity of the probabilities of effects to their prior odds.
 
 use document::names;
-use document::trace::{Outcome, TraceDocument};
+use document::trace::{CandidateOutcome, TraceDocument};
 use report::PageFigure;
 use report::figures::{AxisSpec, Layer, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::{fixed, significant};
-use report::palette::{BEFORE, CurveStyle, DASHED, DIMENSION, HEADING, INK, Marker, RECORD, RGBColor, RUDDER, SOLID};
+use report::palette::{
+    CurveStyle, DASHED, DIMENSION_LINE, HEADING, INK, MODEL_BEFORE, Marker, RECORD, RGBColor, RUDDER, SOLID,
+};
 
 /// Minimum probability, at some odds, at which an unnamed effect is plotted.
 const MIN_DRAWN_PROBABILITY: f64 = 0.05;
@@ -16,7 +18,7 @@ const MAX_LINES: usize = 8;
 /// Minimum change of a probability that is reported.
 const MIN_CHANGE: f64 = 0.1;
 
-const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION, BEFORE, INK, RECORD];
+const COLOURS: [RGBColor; 6] = [HEADING, RUDDER, DIMENSION_LINE, MODEL_BEFORE, INK, RECORD];
 const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up];
 
 /// Effect, or group that the records cannot separate, with its probability for every factor of the prior odds.
@@ -43,16 +45,16 @@ fn lines(document: &TraceDocument) -> Vec<OddsLine<'_>> {
     let trace = &document.trace;
     let is_whole = |probability: &[f64]| !probability.is_empty() && probability.len() == trace.prior.odds_factors.len();
     let named = trace.effects.iter().filter(|effect| is_whole(&effect.probability_by_prior_odds)).map(|effect| {
-        let group = [&effect.id].into_iter().chain(&effect.aliases).map(|id| names::effect(id));
-        let only = effect.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
+        let group = [&effect.id].into_iter().chain(&effect.aliases).map(|id| names::effect_name(id));
+        let only = effect.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record_name(only)));
         let name = group.collect::<Vec<_>>().join(" or ") + &only;
         OddsLine { name, is_named: true, probability: &effect.probability_by_prior_odds }
     });
-    let is_other = |outcome| matches!(outcome, Outcome::Rejected | Outcome::NotObservable);
+    let is_other = |outcome| matches!(outcome, CandidateOutcome::Rejected | CandidateOutcome::NotObservable);
     let unnamed = trace.candidates.iter().filter(|candidate| is_other(candidate.outcome));
     let unnamed = unnamed.filter(|candidate| is_whole(&candidate.probability_by_prior_odds));
     let unnamed = unnamed.map(|candidate| OddsLine {
-        name: names::effect(&candidate.id),
+        name: names::effect_name(&candidate.id),
         is_named: false,
         probability: &candidate.probability_by_prior_odds,
     });
@@ -90,9 +92,9 @@ fn finding(lines: &[OddsLine], named_from: f64) -> String {
 }
 
 /// Sentence on the named effects that would not be named at lower odds; `None` if there are none.
-pub fn sentence(document: &TraceDocument) -> Option<String> {
+pub fn prior_odds_sentence(document: &TraceDocument) -> Option<String> {
     let prior = &document.trace.prior;
-    unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.named_from)
+    unnamed_below(&lines(document), *prior.odds_factors.first()?, prior.min_named_probability)
 }
 
 /// Sentence for the smallest factor of the odds.
@@ -110,26 +112,29 @@ fn unnamed_below(lines: &[OddsLine], least: f64, named_from: f64) -> Option<Stri
 }
 
 /// Figure of the probabilities over the factor of the odds; `None` if the document does not hold them.
-pub fn figure(document: &TraceDocument) -> Option<PageFigure> {
+pub fn prior_odds_figure(document: &TraceDocument) -> Option<PageFigure> {
     let prior = &document.trace.prior;
     let lines = lines(document);
     let [least, .., most] = prior.odds_factors[..] else { return None };
     let layer = |(number, line): (usize, &OddsLine)| {
         let colour = COLOURS[number % COLOURS.len()];
         let dash = if line.is_named { SOLID } else { DASHED };
-        let style = CurveStyle { colour, marker: MARKERS[number % MARKERS.len()], dash, hollow: !line.is_named };
+        let style = CurveStyle { colour, marker: MARKERS[number % MARKERS.len()], dash, is_hollow: !line.is_named };
         let points = prior.odds_factors.iter().zip(line.probability).map(|(x, y)| (*x, *y, None)).collect();
         Layer::marks(line.name.as_str(), style, points).with_line(Pen { dash, ..Pen::new(colour) })
     };
     let layers = lines.iter().enumerate().map(layer).collect();
-    let row = PanelRow { levels: vec![prior.named_from], ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32) };
+    let row = PanelRow {
+        dashed_levels: vec![prior.min_named_probability],
+        ..PanelRow::zeroed(AxisSpec::decimal("probability"), 0.32)
+    };
     let x = AxisSpec::new("prior odds of every effect, times", TickRule::Logarithmic);
     let [least, most] = [least, most].map(|factor| significant(factor, 1));
     let caption = format!(
-        "Probability of every effect with the prior odds of all of them together {least} to {most} times the usual; solid: \
-         named. Dashed level: an effect is named from there. Structures that the search did not fit have no part in it."
+        "Probability of every effect if the prior odds of all effects are {least} to {most} times the usual. Solid: named. \
+         Dashed level: the probability from which an effect is named. Structures that the search did not fit are left out."
     );
-    let finding = format!("Prior odds × {least} to × {most}: {}", finding(&lines, prior.named_from));
+    let finding = format!("Prior odds × {least} to × {most}: {}", finding(&lines, prior.min_named_probability));
     let plot = Panels::new(PanelGroup::over(x, vec![(row, layers)]));
     (!lines.is_empty()).then(|| PageFigure::new("prior-odds", finding, caption, plot))
 }

@@ -11,7 +11,7 @@ use campaign::summary::{Summary, Tally, blind_spots};
 use rayon::prelude::*;
 use report::{Table, Theme};
 
-use super::page_files::{KEY_FIGURE, MARKDOWN_REPORT_FILE, write_page};
+use super::page_files::{KEY_FIGURE_STEM, MARKDOWN_REPORT_FILE, write_page};
 use super::record_study;
 use super::study_figures::{self, FigurePlace};
 use super::study_page::{on_screen, page};
@@ -46,8 +46,8 @@ pub fn write_results(
         Format::Json => screen::print_unescaped(&document(stored, &summary, folder)?),
         format => {
             let brief = match design.is_measured() {
-                true => record_study::brief(&summary.records, design),
-                false => tables::summary_in_brief(&summary, design),
+                true => record_study::brief_record_table(&summary.records, design),
+                false => tables::brief_summary_table(&summary, design),
             };
             screen::print_lines(format.render(&brief).trim_end())
         }
@@ -57,8 +57,8 @@ pub fn write_results(
 /// One row for every cell and method, for other programs: `summary.csv`.
 fn table(summary: &Summary, design: &Design) -> Table {
     match design.is_measured() {
-        true => record_study::summary(&summary.records, design),
-        false => tables::summary(&summary.methods, design),
+        true => record_study::record_summary_table(&summary.records, design),
+        false => tables::method_summary_table(&summary.methods, design),
     }
 }
 
@@ -68,7 +68,7 @@ pub fn document(stored: &StoredStudy, summary: &Summary, folder: &ResultFolder) 
         folder: folder.path().display().to_string(),
         manifest: &stored.manifest,
         summary: table(summary, &stored.design).to_records(),
-        failures: tables::failures(summary, &stored.design),
+        failures: tables::failure_lines(summary, &stored.design),
     })
 }
 
@@ -91,19 +91,23 @@ pub fn write_files(
         Ok(())
     })?;
     let summary = tally.finish();
-    write_csv(folder, SUMMARY, &summary.methods, |lines| tables::summary(lines, design))?;
+    write_csv(folder, SUMMARY, &summary.methods, |lines| tables::method_summary_table(lines, design))?;
     if design.methods.len() > 1 {
         let reference = &design.methods[summary.reference];
-        write_csv(folder, "pairs.csv", &summary.comparisons, |lines| tables::pairs(lines, reference, design))?;
+        write_csv(folder, "pairs.csv", &summary.comparisons, |lines| {
+            tables::comparison_table(lines, reference, design)
+        })?;
     }
     write_trace_tables(&summary, design, folder)?;
     if !summary.predictions.is_empty() {
-        write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
-        write_table(folder, "criteria.csv", coverage_table::criteria(&summary.predictions, design))?;
-        let factors = coverage_table::scaled_by_other_ships(&summary.predictions, design);
+        write_csv(folder, "predictions.csv", &summary.predictions, |lines| {
+            coverage_table::coverage_table(lines, design)
+        })?;
+        write_table(folder, "criteria.csv", coverage_table::criterion_decision_table(&summary.predictions, design))?;
+        let factors = coverage_table::scaled_coverage_table(&summary.predictions, design);
         write_table(folder, "interval-factors.csv", factors)?;
     }
-    let brief = (design.cells.len() <= MAX_LISTED_CELLS).then(|| tables::summary_in_brief(&summary, design));
+    let brief = (design.cells.len() <= MAX_LISTED_CELLS).then(|| tables::brief_summary_table(&summary, design));
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
     }
@@ -112,7 +116,7 @@ pub fn write_files(
     // The key figure of an earlier scenario is removed, so that it is not taken for a figure of this scenario.
     if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
         for kind in ["svg", "png"] {
-            let path = folder.path().join(format!("{KEY_FIGURE}.{kind}"));
+            let path = folder.path().join(format!("{KEY_FIGURE_STEM}.{kind}"));
             disk::remove_if_there(&path).on("remove", &path)?;
         }
     }
@@ -127,12 +131,12 @@ fn write_trace_tables(summary: &Summary, design: &Design, folder: &ResultFolder)
     if tracing.is_empty() {
         return Ok(());
     }
-    write_csv(folder, "tracing.csv", tracing, |lines| tracing_table::table(lines, summary, design, true))?;
-    let reliability = tracing_table::reliability(&study_figures::highlighted_trace(design, summary));
+    write_csv(folder, "tracing.csv", tracing, |lines| tracing_table::naming_table(lines, summary, design, true))?;
+    let reliability = tracing_table::reliability_table(&study_figures::highlighted_trace(design, summary));
     write_table(folder, "reliability.csv", Some(reliability))?;
-    write_table(folder, "outcomes.csv", outcomes::table(design, summary))?;
+    write_table(folder, "outcomes.csv", outcomes::outcome_table(design, summary))?;
     let spots = blind_spots(tracing, design);
-    let spots = (!spots.is_empty()).then(|| blind_spots_table::table(&spots, design, str::to_owned));
+    let spots = (!spots.is_empty()).then(|| blind_spots_table::blind_spots_table(&spots, design, str::to_owned));
     write_table(folder, "blind-spots.csv", spots)
 }
 
@@ -143,10 +147,10 @@ fn write_table(folder: &ResultFolder, name: &str, table: Option<Table>) -> Resul
 
 /// `summary.tex`: the methods over all cells, and each against the reference method on the same trials.
 fn for_paper(summary: &Summary, stored: &StoredStudy) -> String {
-    let overall = tables::overall_for_paper(summary, stored).to_latex();
+    let overall = tables::overall_paper_table(summary, stored).to_latex();
     match summary.comparisons.is_empty() || stored.design.cells.len() > MAX_LISTED_CELLS {
         true => overall,
-        false => format!("{overall}\n{}", tables::pairs_for_paper(summary, stored).to_latex()),
+        false => format!("{overall}\n{}", tables::comparison_paper_table(summary, stored).to_latex()),
     }
 }
 

@@ -5,7 +5,7 @@ use document::identified_ship::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::figures::{AxisSpec, Layer, LayerKind, PanelGroup, PanelRow, Panels, Pen, TickRule};
 use report::number::significant;
-use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
+use report::palette::{BACKGROUND, HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{CurveOrigin, PlotCurve};
 use ship::angle::to_deg;
 
@@ -49,8 +49,8 @@ pub fn heading_and_residual(heading: PlotCurve, models: Vec<ModelOverTime>) -> [
         }));
     }
     for [heading, residual] in bands {
-        upper.push(heading.within(0.0));
-        middle.push(residual.within(0.0));
+        upper.push(heading.widening_at_most(0.0));
+        middle.push(residual.widening_at_most(0.0));
     }
     [upper, middle]
 }
@@ -97,7 +97,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let mut layers = vec![Layer::band("seen in the records", [edge(-1.0), edge(1.0)], RECORD, 0.2)];
     if let Some((first, others_drawn)) = curves.split_first() {
         let drawn = others_drawn.iter().take(MAX_CURVES).map(|ship| curve(ship, &|_| true));
-        layers.extend(drawn.map(|ship| Layer::line("drawn ships", ship, Pen::pale()).within(0.4)));
+        layers.extend(drawn.map(|ship| Layer::line("drawn ships", ship, Pen::pale()).widening_at_most(0.4)));
         // Rows at which the rudder decreases while the yaw rate grows.
         let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
         let can_be_unstable = first.instability().is_some();
@@ -105,7 +105,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
         let is_unstable = |row: usize| can_be_unstable && (falls(row) || (row > 0 && falls(row - 1)));
         let pen = Pen::new(HEADING).width(1.3);
         // A white edge separates the curve from those of the drawn ships.
-        layers.push(Layer::line("", curve(first, &|_| true), Pen::new(PAPER).width(2.4)));
+        layers.push(Layer::line("", curve(first, &|_| true), Pen::new(BACKGROUND).width(2.4)));
         layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), pen));
         if can_be_unstable {
             let dashed = Pen { dash: SHORT_DASH, ..pen };
@@ -115,7 +115,7 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     let clipping_note = Some(String::from("Some drawn ships are cut at the frame."));
     let group = PanelGroup::over(AxisSpec::rudder(), vec![(PanelRow::zeroed(AxisSpec::yaw_rate(), 0.42), layers)]);
-    Panels { note, clipping_note, ..Panels::new(PanelGroup { zero: true, ..group }) }
+    Panels { note, clipping_note, ..Panels::new(PanelGroup { has_zero_line: true, ..group }) }
 }
 
 #[cfg(test)]

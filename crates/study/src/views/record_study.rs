@@ -14,11 +14,12 @@ use campaign::store::StoredStudy;
 use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
 use report::figures::{AxisSpec, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, TickRule};
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::number::{self, MISSING, significant};
 use report::palette::CurveStyle;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
+use super::key_figure::TRACE_REMARK;
 use super::key_rows::tint;
 use super::page_files::write_page;
 use super::study_figures::{self, FigurePlace, StudyFigure};
@@ -35,13 +36,13 @@ const EFFECTS: &str = "effects.csv";
 const JUDGED: &str = "judged";
 
 /// One row for every cell and method, for a person.
-pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
-    let mut head = tables::head(design).counts(["failed"]);
+pub fn brief_record_table(lines: &[RecordSummary], design: &Design) -> Table {
+    let mut head = tables::cell_and_method_head(design).counts(["failed"]);
     for name in ["own error", "judged error"] {
-        head = head.numbers([name]).unit("deg").interval();
+        head = head.numbers([name]).unit("deg").interval95();
     }
     let first = &design.methods[0].label;
-    let head = head.numbers([format!("over {first}")]).interval().numbers(["over it in 60 s"]).interval();
+    let head = head.numbers([format!("over {first}")]).interval95().numbers(["over it in 60 s"]).interval95();
     let head = head.texts(["named"]);
     let mut table = Table::new(head);
     for line in lines {
@@ -54,7 +55,7 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
             );
             cells.push(number::interval(figure.and_then(|figure| figure.ci95)));
         }
-        let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect(id)));
+        let named = line.named.iter().map(|(id, count)| format!("{} ({count})", names::effect_name(id)));
         cells.push(named.collect::<Vec<_>>().join(", "));
         table.push(cells);
     }
@@ -62,8 +63,8 @@ pub fn brief(lines: &[RecordSummary], design: &Design) -> Table {
 }
 
 /// `summary.csv`: one row for every cell and method, for other programs.
-pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
-    let mut head = tables::head(design).counts(["fits", "failed"]);
+pub fn record_summary_table(lines: &[RecordSummary], design: &Design) -> Table {
+    let mut head = tables::cell_and_method_head(design).counts(["fits", "failed"]);
     for name in ["own error [deg]", "judged error [deg]", "ratio to the first method", "ratio in 60 s"] {
         head = head.numbers(["", " lower 95", " upper 95"].map(|end| format!("{name}{end}")));
     }
@@ -83,7 +84,7 @@ pub fn summary(lines: &[RecordSummary], design: &Design) -> Table {
 
 /// Table of every fit and the record that validates it: K, T, heading errors, verdict, named effects and failure.
 fn trials(rows: &[StudyRow], design: &Design) -> Table {
-    let head = tables::head(design).texts(["fitted", "judge"]);
+    let head = tables::cell_and_method_head(design).texts(["fitted", "judge"]);
     let head = head.numbers(["K_per_s", "T_s", "own_error_deg", "judged_error_deg"]);
     let mut table = Table::new(head.texts(["verdict", "named", "failure"]));
     let number = |value: Option<f64>| value.map_or_else(String::new, |number| significant(number, 6));
@@ -95,7 +96,8 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
         cells.extend([row.k_per_s, row.t_s, row.heading_rmse_deg, row.validation_rmse_deg].map(number));
         let traced = row.traced.as_ref();
         cells.push(traced.map_or_else(String::new, |trace| trace.verdict.to_string()));
-        let named = traced.map(|trace| trace.named.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
+        let named =
+            traced.map(|trace| trace.named_effects.iter().map(|effect| effect.id.to_string()).collect::<Vec<_>>());
         cells.push(named.unwrap_or_default().join("+"));
         cells.push(row.failure.as_deref().unwrap_or_default().to_owned());
         table.push(cells);
@@ -105,14 +107,14 @@ fn trials(rows: &[StudyRow], design: &Design) -> Table {
 
 /// Table of the parameters of the effects that every fit named, one row each.
 fn effects(rows: &[StudyRow], design: &Design) -> Table {
-    let head = tables::head(design).texts(["fitted", "effect", "parameter"]).numbers(["value", "sd"]);
+    let head = tables::cell_and_method_head(design).texts(["fitted", "effect", "parameter"]).numbers(["value", "sd"]);
     let mut table = Table::new(head);
     // A fit has a row for each record on which it is validated.
     let mut fits = HashSet::new();
     for row in rows {
         let cell = &design.cells[row.cell as usize];
         let Some(record) = cell.records.get(row.replicate as usize) else { continue };
-        let named = row.traced.iter().flat_map(|traced| &traced.named);
+        let named = row.traced.iter().flat_map(|traced| &traced.named_effects);
         if row.traced.is_none() || !fits.insert((row.cell, row.method, &record.fitted)) {
             continue;
         }
@@ -161,7 +163,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let names: Vec<String> = cells.iter().map(name).collect();
     let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
-        x: AxisSpec::new("heading error on records that were not fitted [°]", TickRule::Logarithmic),
+        x: AxisSpec::new("rms heading error on records that were not fitted [°]", TickRule::Logarithmic),
         rows: cells.iter().map(row).collect(),
         ..RowsColumn::default()
     };
@@ -170,8 +172,8 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let plot = NamedRows {
         names,
         columns: vec![column],
-        note: Some(String::from(
-            "Pale: single records. Dark: medians of five or more, with intervals for six fits or more.",
+        note: Some(format!(
+            "Pale: single records. Dark: medians of five or more, with intervals for six fits or more. {TRACE_REMARK}"
         )),
         ..NamedRows::default()
     };
@@ -224,10 +226,10 @@ fn finding(lines: &[RecordSummary], design: &Design) -> String {
 pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let design = &stored.design;
     let mut text = format!("{}: {}\n\n", stored.manifest.name, design.prose.question.trim());
-    text += &brief(&summary.records, design).to_text();
+    text += &brief_record_table(&summary.records, design).to_text();
     if !summary.predictions.is_empty() {
         text += "\ncoverage of 90 % prediction intervals\n";
-        text += &coverage_table::pooled(&summary.predictions, design).to_text();
+        text += &coverage_table::pooled_coverage_table(&summary.predictions, design).to_text();
     }
     text
 }
@@ -249,8 +251,8 @@ fn page(stored: &StoredStudy, summary: &Summary, figures: Vec<StudyFigure>) -> P
     let page = RecordsPage {
         manifest,
         prose: &design.prose,
-        brief: brief(&summary.records, design),
-        coverage: (!predictions.is_empty()).then(|| coverage_table::pooled(predictions, design)),
+        brief: brief_record_table(&summary.records, design),
+        coverage: (!predictions.is_empty()).then(|| coverage_table::pooled_coverage_table(predictions, design)),
         figures: PlacedFigures(figures),
     };
     Page::new(page.render(), page.figures)
@@ -273,13 +275,13 @@ pub fn write_files(
         Ok(())
     })?;
     let made = Summary { records: record_summaries(&rows, design), ..tally.finish() };
-    folder.write("summary.csv", summary(&made.records, design).to_csv())?;
+    folder.write("summary.csv", record_summary_table(&made.records, design).to_csv())?;
     folder.write(RECORDS, trials(&rows, design).to_csv())?;
     if rows.iter().any(|row| row.traced.is_some()) {
         folder.write(EFFECTS, effects(&rows, design).to_csv())?;
     }
     if !made.predictions.is_empty() {
-        folder.write("predictions.csv", coverage_table::table(&made.predictions, design).to_csv())?;
+        folder.write("predictions.csv", coverage_table::coverage_table(&made.predictions, design).to_csv())?;
     }
     let judges = rows.iter().any(|row| row.validation_rmse_deg.is_some());
     let all = || {

@@ -1,21 +1,22 @@
 //! Estimates at each scale compared with the joint estimate, as a sentence and as tables.
 
-use document::scales::{ComparedModel, ScalesEntry, Scaling};
-use report::number::{MISSING, fixed, uncertain};
+use document::scales::{ComparedModel, ScalesEntry, ScalingVerdict};
+use report::number::{MISSING, fixed, with_uncertainty_and_power};
 use report::{Table, TableHead};
 use ship::Particulars;
 use trial::Quantity;
 
-use super::method_table::estimate;
+use super::method_table::estimate_and_interval;
 use crate::scales::scale_name;
 
 /// Sentence on the terms of a model: which do not scale, which scale, and which are undecided.
 pub fn scaling_terms_sentence(model: &ComparedModel) -> String {
-    let symbols_of = |verdict: Scaling| -> Vec<&str> {
+    let symbols_of = |verdict: ScalingVerdict| -> Vec<&str> {
         let terms = model.terms.iter().filter(|term| term.verdict == verdict);
         terms.map(|term| term.symbol.as_str()).collect()
     };
-    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::Undecided].map(symbols_of);
+    let [same, differing, open] =
+        [ScalingVerdict::Scales, ScalingVerdict::DoesNotScale, ScalingVerdict::Undecided].map(symbols_of);
     let mut parts = Vec::new();
     for (symbols, predicates) in [
         (differing, ["does not scale", "do not scale"]),
@@ -36,7 +37,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
     let head = TableHead::default().texts(["term", "all together"]).texts(groups);
     let mut table = Table::new(head.numbers(["difference"]).unit("sd").texts(["verdict"]));
     let number = |quantity: &Quantity| match quantity.value.is_finite() {
-        true => uncertain(quantity.value, quantity.sd),
+        true => with_uncertainty_and_power(quantity.value, quantity.sd),
         false => MISSING.to_owned(),
     };
     for term in &model.terms {
@@ -52,13 +53,13 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
 
 /// Table of K' and T' with their intervals, one row for every name.
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
-    let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval().texts(["sd"]);
-    let mut table = Table::new(head.numbers(["T′"]).interval().texts(["sd"]));
+    let head = TableHead::default().texts(["method"]).numbers(["K′"]).interval95().texts(["sd"]);
+    let mut table = Table::new(head.numbers(["T′"]).interval95().texts(["sd"]));
     let sd = |value: &Quantity| value.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
     for (name, k, t) in rows {
         let mut cells = vec![name.clone()];
         for quantity in [k, t] {
-            cells.extend(estimate(quantity));
+            cells.extend(estimate_and_interval(quantity));
             cells.push(sd(quantity));
         }
         table.push(cells);

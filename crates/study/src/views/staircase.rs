@@ -7,7 +7,7 @@ use report::figures::{AxisSpec, Layer, LayeredPanel, PanelGroup, PanelRow, Panel
 use report::number::significant;
 use report::{CurveOrigin, PageFigure, PlotCurve};
 
-use super::trace_tables::{term, unnamed_remark};
+use super::trace_tables::{effect_text, unnamed_remark};
 use crate::documents::curves::TraceCurves;
 
 /// Heading errors along the steps: `1.9° → 0.90° (speed loss) → 0.32° (sway coupling)`.
@@ -15,15 +15,15 @@ fn sentence(document: &TraceDocument) -> String {
     let size = |step: &InclusionStepEntry| format!("{}°", significant(step.heading_rmse_deg, 2));
     let step_words = |step: &InclusionStepEntry| match &step.id {
         None => size(step),
-        Some(id) => format!("{} ({}{})", size(step), names::effect(id), unnamed_remark(document, id)),
+        Some(id) => format!("{} ({}{})", size(step), names::effect_name(id), unnamed_remark(document, id)),
     };
     document.staircase.iter().map(step_words).collect::<Vec<_>>().join(" → ")
 }
 
 /// Figure of the steps; `None` if the model adds no effect to the base.
-pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
+pub fn staircase_figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let steps = &document.staircase;
-    let [times, residuals] = &curves.staircase;
+    let [times, residuals] = &curves.staircase_residuals;
     let time = times.first()?;
     let panel = |head: String, values: Vec<f64>, origin: &CurveOrigin| LayeredPanel {
         head: Some(head),
@@ -38,7 +38,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     for (number, (pair, step)) in residuals.windows(2).zip(&steps[1..]).enumerate() {
         let carried = pair[0].iter().zip(&pair[1]).map(|(before, after)| before - after).collect();
         let name = match (&step.id, &step.form) {
-            (Some(id), Some(form)) => term(id, form, None),
+            (Some(id), Some(form)) => effect_text(id, form, None),
             _ => String::new(),
         };
         let size = |number: usize| significant(steps[number].heading_rmse_deg, 2);
@@ -52,7 +52,7 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
     let caption = format!(
         "{}: heading error before an effect, the part that the effect explains, and the error after it. Every step is refitted for \
          the closest replay; degrees are root mean squares over all fitted records.",
-        names::record(&document.records.first()?.name)
+        names::record_name(&document.records.first()?.name)
     );
     (!residuals.is_empty())
         .then(|| PageFigure::new("staircase", format!("Heading error {}", sentence(document)), caption, plot))

@@ -12,7 +12,7 @@ use campaign::manifest::Manifest;
 use campaign::scenario::name;
 use report::{Page, PlacedFigures};
 
-use super::page_files::KEY_FIGURE;
+use super::page_files::KEY_FIGURE_STEM;
 
 /// Name of the page.
 const PAGE: &str = "README.md";
@@ -105,12 +105,12 @@ fn way(from: &Path, to: &Path) -> String {
 
 /// File of the figure that a scenario names. Fails if it is missing.
 fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
-    let files = [KEY_FIGURE, stem].map(|stem| format!("{stem}.png"));
+    let files = [KEY_FIGURE_STEM, stem].map(|stem| format!("{stem}.png"));
     if let Some(file) = files.into_iter().find(|file| folder.join(file).is_file()) {
         return Ok(file);
     }
     let file = format!("{stem}.png");
-    let names = disk::names(folder).on("list", folder)?;
+    let names = disk::entry_names(folder).on("list", folder)?;
     let stems: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
     let stems = stems.join(", ");
     Err(Failure::in_file(

@@ -2,7 +2,7 @@
 
 use campaign::scenario::name::slug;
 use campaign::stored_figures::{
-    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, ReplayCurves, Replays,
+    ConfidenceIntervals, DerivativeCurves, FourierFitCurves, MethodEstimate, MotionCurves, ReplayCurves, Replays,
 };
 use report::figures::Plot;
 use report::number::significant;
@@ -13,7 +13,7 @@ use super::charts::{self, ErrorMeasure};
 use super::findings;
 use super::key_figure;
 use super::outcomes;
-use super::page_files::KEY_FIGURE;
+use super::page_files::KEY_FIGURE_STEM;
 use super::pooled_charts;
 use super::trace_charts as traces;
 use super::tracing_table::has_several_traces;
@@ -79,12 +79,16 @@ pub fn chosen_figures(
                 plot = key_figure::highlighted_chart(plot, &output.highlight);
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
-            let mut key = PageFigure::new(KEY_FIGURE, finding, figure.caption.clone(), plot);
+            let mut key = PageFigure::new(KEY_FIGURE_STEM, finding, figure.caption.clone(), plot);
             match place {
                 FigurePlace::Chart | FigurePlace::AllTrials => {
                     key_figure::add_trials_remark(&mut key, &key_figure::trials_remark(design));
                 }
                 _ if design.is_measured() => {}
+                FigurePlace::Traces => key_figure::add_trials_remark(
+                    &mut key,
+                    &format!("{} {}", key_figure::SIMULATED_REMARK, key_figure::TRACE_REMARK),
+                ),
                 _ => key_figure::add_trials_remark(&mut key, key_figure::SIMULATED_REMARK),
             }
             (FigurePlace::Key, key)
@@ -170,7 +174,7 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         );
         under_its_finding(stem, caption, Plot::Cells(map))
     };
-    let power = traces::detection_power(&lines).map(|data| {
+    let power = traces::detection_power_curves(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
                        statistic 2 ln Λ against the best first-order response that it has on average, with 95 % \
                        intervals; of many kinds of trial those in a \
@@ -180,28 +184,28 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         let finding = format!("The one missing effect is named in {named} of {trials} trials");
         PageFigure::new("power", finding, format!("{caption}{whose}"), data)
     });
-    let reliability = traces::reliability(&lines).map(|data| {
+    let reliability = traces::reliability_diagram(&lines).map(|data| {
         let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
                        effect on the list counts once in every trial of a ship whose effects are known.";
         PageFigure::new("reliability", traces::present_effects_finding(&lines), format!("{caption}{whose}"), data)
     });
-    let rules = traces::rules(design, &summary.tracing).map(|plot| {
+    let rules = traces::trace_comparison_rows(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \
                        and nothing else, of those whose ship lacks something, with Wilson's 95 % intervals.";
         under_its_finding("rules", caption, plot)
     });
-    let false_names = traces::false_names(design, &summary.tracing).map(|plot| {
+    let false_names = traces::false_positive_rows(design, &summary.tracing).map(|plot| {
         let caption = "Trials with a false name where nothing is missing, with Wilson's 95 % intervals: the upper end \
             bounds how often a rule \
                        invents an effect.";
         under_its_finding("false-names", caption, plot)
     });
-    let outcomes = outcomes::figure(design, &lines).map(|(finding, map)| {
+    let outcomes = outcomes::outcome_map(design, &lines).map(|(finding, map)| {
         let caption =
             "Outcomes for every ship, in per cent of its trials, with 95 % intervals (Wilson). Outlined: right.";
         PageFigure::new("outcomes", finding, format!("{caption}{whose}"), Plot::Cells(map))
     });
-    let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
+    let confusions = traces::confusion_matrices(design, &lines).into_iter().enumerate().map(confusion);
     rules.into_iter().chain(false_names).chain(outcomes).chain(confusions).chain(power).chain(reliability).collect()
 }
 
@@ -213,7 +217,7 @@ fn of_errors(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         if !summary.tracing.is_empty() && design.cells.len() > MAX_TRACED_CELLS {
             break;
         }
-        for (group, reading, plot) in charts::over_axes(design, summary, measure) {
+        for (group, reading, plot) in charts::error_charts_over_axes(design, summary, measure) {
             let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |group| stem_of(measure.stem(), group));
             let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
             figures.push(under_its_finding(stem, format!("{reading}{place}"), plot));
@@ -241,12 +245,12 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         );
         under_its_finding("indices", caption, data)
     }));
-    for (stem, title, data) in pooled_charts::heat_maps(design, summary) {
+    for (stem, title, data) in pooled_charts::error_heat_maps(design, summary) {
         figures.push(under_its_finding(stem, format!("{title} of every method over both axes: dark is good."), data));
     }
     // A single cell needs no name.
     let name = |cell: usize| if design.cells.len() > 1 { design.cells[cell].labels.join(", ") } else { String::new() };
-    for (cell, data) in pooled_charts::violins(design, summary) {
+    for (cell, data) in pooled_charts::error_violins(design, summary) {
         let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
         let (stem, place) = (stem_of("violins", &name(cell)), here(&name(cell)));
         figures.push(under_its_finding(stem, format!("{caption}{place}"), data));
@@ -266,7 +270,7 @@ fn of_all_trials(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
 type Shown = (String, Plot);
 
 fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Item = PageFigure> + use<'a> {
-    let fourier = |data: &CurveFit| format!("Heading error of the series: {}", rms(&data.residual));
+    let fourier = |data: &FourierFitCurves| format!("Heading error of the series: {}", rms(&data.residual));
     let figures: [(&str, &str, Option<Shown>); 5] = [
         (
             "trial",
@@ -314,19 +318,19 @@ fn accelerations(data: &DerivativeCurves) -> String {
         let name = curve.name.clone().unwrap_or_else(|| curve.origin.label().to_owned());
         Some((name, curve.yaw_acceleration.finite_pairs().map(|(_, y)| y.abs()).reduce(f64::max)?))
     };
-    capital(&findings::range("largest yaw acceleration [°/s²]", data.curves.iter().filter_map(largest)))
+    capital(&findings::range_phrase("largest yaw acceleration [°/s²]", data.curves.iter().filter_map(largest)))
 }
 
 /// Finding: range of the replay errors.
 pub fn replay_error_finding(data: &Replays) -> String {
     let named_rms = |replay: &ReplayCurves| Some((replay.origin.label().to_owned(), replay.rms_deg?));
-    capital(&findings::range("replay error, rms [°]", data.replays.iter().filter_map(named_rms)))
+    capital(&findings::range_phrase("replay error, rms [°]", data.replays.iter().filter_map(named_rms)))
 }
 
 /// Finding of a showcase: range of the estimated T over the methods, and the true T.
-fn time_constants(data: &Intervals) -> String {
+fn time_constants(data: &ConfidenceIntervals) -> String {
     let named_time = |estimate: &MethodEstimate| Some((estimate.origin.label().to_owned(), estimate.t_s?.value));
     let truth =
         data.truth.as_ref().map_or_else(String::new, |truth| format!("; the truth is {} s", significant(truth.t_s, 3)));
-    format!("{}{truth}", findings::range("T [s]", data.estimates.iter().filter_map(named_time)))
+    format!("{}{truth}", findings::range_phrase("T [s]", data.estimates.iter().filter_map(named_time)))
 }

@@ -7,7 +7,7 @@ use campaign::showcase::{Showcase, ShowcaseAnswer};
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, blind_spots};
 use document::names;
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::{Page, PlacedFigures, Table, number};
 
 use super::study_figures::{FigurePlace, StudyFigure};
@@ -21,27 +21,27 @@ pub fn on_screen(stored: &StoredStudy, summary: &Summary) -> String {
     let StoredStudy { manifest, design, showcases, .. } = stored;
     let mut text = format!("{}: {}\n\n", manifest.name, design.prose.question.trim());
     for showcase in showcases {
-        text += &format!("{}\n{}\n", title(showcase, "first trial"), tables::showcase(showcase).to_text());
+        text += &format!("{}\n{}\n", title(showcase, "first trial"), tables::showcase_table(showcase).to_text());
     }
     if design.cells.len() <= MAX_SHOWN_CELLS {
-        text += &tables::summary_in_brief(summary, design).to_text();
+        text += &tables::brief_summary_table(summary, design).to_text();
     } else {
         text += &format!("all {} cells together; report.md lists them one by one\n", design.cells.len());
-        text += &tables::overall(summary, design).to_text();
+        text += &tables::overall_table(summary, design).to_text();
     }
     if !summary.tracing.is_empty() {
         text += &format!(
             "\neffects named by the traces\n{}",
-            tracing_table::by_ship_kind(&summary.tracing, design).to_text()
+            tracing_table::ship_kind_table(&summary.tracing, design).to_text()
         );
     }
     if !summary.predictions.is_empty() {
         text += &format!(
             "\ncoverage of 90 % prediction intervals\n{}",
-            coverage_table::pooled(&summary.predictions, design).to_text()
+            coverage_table::pooled_coverage_table(&summary.predictions, design).to_text()
         );
     }
-    let failures = tables::failures(summary, design);
+    let failures = tables::failure_lines(summary, design);
     failures.iter().take(MAX_SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
     if failures.len() > MAX_SHOWN_CELLS {
         text += &format!("\n… and {} lines more in the report", failures.len() - MAX_SHOWN_CELLS);
@@ -101,10 +101,11 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
     let named = || {
         let spots = blind_spots(tracing, design);
         NamedEffects {
-            kinds: tracing_table::by_ship_kind(tracing, design),
-            blind_spots: (!spots.is_empty()).then(|| blind_spots_table::table(&spots, design, names::effect)),
-            outcomes: outcomes::table(design, summary),
-            cells: tracing_table::table(tracing, summary, design, false),
+            kinds: tracing_table::ship_kind_table(tracing, design),
+            blind_spots: (!spots.is_empty())
+                .then(|| blind_spots_table::blind_spots_table(&spots, design, names::effect_name)),
+            outcomes: outcomes::outcome_table(design, summary),
+            cells: tracing_table::naming_table(tracing, summary, design, false),
         }
     };
     let time = |(number, method): (usize, &MethodName)| {
@@ -117,15 +118,15 @@ pub fn page(stored: &StoredStudy, summary: &Summary, brief: Option<Table>, figur
         prose: &design.prose,
         trials: showcases.iter().enumerate().map(trial).collect(),
         named: (!tracing.is_empty()).then(named),
-        coverage: is_predicted.then(|| coverage_table::pooled(&summary.predictions, design)),
-        scaled: coverage_table::scaled_by_other_ships(&summary.predictions, design),
-        criteria: coverage_table::criteria(&summary.predictions, design).filter(|_| is_predicted),
-        overall: (design.cells.len() > 1).then(|| tables::overall(summary, design)),
+        coverage: is_predicted.then(|| coverage_table::pooled_coverage_table(&summary.predictions, design)),
+        scaled: coverage_table::scaled_coverage_table(&summary.predictions, design),
+        criteria: coverage_table::criterion_decision_table(&summary.predictions, design).filter(|_| is_predicted),
+        overall: (design.cells.len() > 1).then(|| tables::overall_table(summary, design)),
         brief,
         cells: design.cells.len(),
         relative: tables::error_reference(design),
         times: design.methods.iter().enumerate().filter_map(time).collect(),
-        failures: tables::failures(summary, design),
+        failures: tables::failure_lines(summary, design),
         figures,
     };
     Page::new(page.render(), page.figures)
@@ -135,7 +136,7 @@ fn first_trial<'a>(showcase: &'a Showcase, figures: String) -> FirstTrial<'a> {
     let warning = |answer: &ShowcaseAnswer, warning| format!("{}: {warning}", answer.entry.method);
     FirstTrial {
         title: title(showcase, "The first trial"),
-        table: tables::showcase(showcase),
+        table: tables::showcase_table(showcase),
         warnings: showcase
             .methods
             .iter()

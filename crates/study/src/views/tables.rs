@@ -5,16 +5,16 @@ use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
 use campaign::design::{CellFacts, Design};
-use campaign::scenario::{MethodName, TRACE};
+use campaign::scenario::{MethodName, TRACE_ID};
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
 use campaign::store::StoredStudy;
-use campaign::summary::{IndexErrors, MethodSummary, Performance, ReferenceComparison, Summary};
+use campaign::summary::{IndexErrors, MethodPerformance, MethodSummary, ReferenceComparison, Summary};
 use document::method::MethodEntry;
 
 /// Table of the first trial of a cell (a showcase): estimates of the methods, and below them the true and the published
 /// values.
-pub fn showcase(showcase: &Showcase) -> Table {
+pub fn showcase_table(showcase: &Showcase) -> Table {
     let entries: Vec<MethodEntry> = showcase.methods.iter().map(|shown| shown.entry.clone()).collect();
     let mut table = super::method_table::table(&entries, &[]);
     let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
@@ -28,8 +28,8 @@ pub fn showcase(showcase: &Showcase) -> Table {
 }
 
 /// Every statistic of methods in cells, for other programs: `summary.csv`. An interval is two columns.
-pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
-    let mut head = head(design).counts(["trials", "failed"]);
+pub fn method_summary_table(lines: &[MethodSummary], design: &Design) -> Table {
+    let mut head = cell_and_method_head(design).counts(["trials", "failed"]);
     for index in ["K", "T", "K/T"] {
         head = ERRORS.iter().fold(head, |head, (name, unit, _)| with_ends(head, &format!("{index} {name}"), unit));
     }
@@ -54,7 +54,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
         ] {
             cells.extend(all_digits(figure));
         }
-        cells.push(number::optional(performance.evaluations, 1));
+        cells.push(number::optional(performance.mean_evaluations, 1));
         table.push(cells);
     }
     table
@@ -78,21 +78,21 @@ const ERRORS: [ErrorFigure; 15] = [
     ("90 % of sizes", "%", |errors| errors.absolute_error_p90),
     ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
     ("width of intervals", "%", |errors| errors.median_interval_width),
-    ("quoting intervals", "%", |errors| errors.interval_share.map(|share| share.times(100.0))),
+    ("quoting intervals", "%", |errors| errors.share_with_interval.map(|share| share.times(100.0))),
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
 /// Columns of the axes, one each, and of the method.
-pub fn head(design: &Design) -> TableHead {
-    head_of_cells(design).texts(["method"])
+pub fn cell_and_method_head(design: &Design) -> TableHead {
+    cell_head(design).texts(["method"])
 }
 
 /// Columns of the axes, one each.
-pub fn head_of_cells(design: &Design) -> TableHead {
+pub fn cell_head(design: &Design) -> TableHead {
     TableHead::default().texts(&design.axes)
 }
 
-/// Labels of a cell and a method, in the columns of [`head`].
+/// Labels of a cell and a method, in the columns of [`cell_and_method_head`].
 pub fn row_labels(design: &Design, cell: usize, method: usize) -> Vec<String> {
     let labels = design.cells[cell].labels.iter().cloned();
     labels.chain([design.methods[method].label.clone()]).collect()
@@ -111,12 +111,12 @@ fn all_digits(figure: Option<Statistic>) -> [String; 3] {
 
 /// Statistics of methods in the width of a screen or a page: failures, median and rms errors with interval, coverage,
 /// spread over the bound, and the validation error if there is one.
-pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
+pub fn brief_summary_table(summary: &Summary, design: &Design) -> Table {
     let performances = || summary.methods.iter().map(|line| &line.performance);
     let validated = performances().any(|performance| performance.validation_rmse_deg.is_some());
-    let mut head = head(design).counts(["failed"]);
+    let mut head = cell_and_method_head(design).counts(["failed"]);
     for index in ["K", "T"] {
-        head = head.numbers(["median", "rms"].map(|figure| format!("{index} {figure}"))).unit("%").interval();
+        head = head.numbers(["median", "rms"].map(|figure| format!("{index} {figure}"))).unit("%").interval95();
         head = head.counts(["coverage"]).unit("%").numbers(["sd/bound"]);
     }
     let mut table = Table::new(head.numbers(validated.then_some("validation")).unit("deg"));
@@ -129,7 +129,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     with_reference(table, design)
 }
 
-fn brief(performance: &Performance) -> Vec<String> {
+fn brief(performance: &MethodPerformance) -> Vec<String> {
     let mut cells = vec![format!("{}/{}", performance.failed(), performance.trials)];
     for errors in [&performance.k, &performance.t] {
         cells.push(supported(errors.median));
@@ -145,7 +145,7 @@ fn brief(performance: &Performance) -> Vec<String> {
 pub fn error_reference(design: &Design) -> &'static str {
     let is_nearest = |cell: &CellFacts| cell.is_compared_with_nearest;
     match () {
-        () if design.methods.iter().all(|method| method.id == TRACE) => TRUTH,
+        () if design.methods.iter().all(|method| method.id == TRACE_ID) => TRUTH,
         () if design.cells.iter().all(is_nearest) => "the nearest first-order response",
         () if design.cells.iter().any(is_nearest) => {
             "the truth, and of ships that are not first order to the nearest first-order response"
@@ -166,10 +166,10 @@ fn with_reference(table: Table, design: &Design) -> Table {
 }
 
 /// Statistics over all cells, one row per method.
-pub fn overall(summary: &Summary, design: &Design) -> Table {
+pub fn overall_table(summary: &Summary, design: &Design) -> Table {
     let mut head = TableHead::default().texts(["method"]).counts(["failed"]);
     for index in ["K", "T"] {
-        head = head.numbers([format!("{index} median size")]).unit("%").interval();
+        head = head.numbers([format!("{index} median size")]).unit("%").interval95();
         head = head.numbers(["90 %"]).unit("%").counts(["coverage"]).unit("%");
     }
     let mut table = Table::new(head.numbers(["validation"]).unit("deg"));
@@ -187,8 +187,8 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
     with_reference(table, design)
 }
 
-/// Table of [`overall`] with caption and label for a paper: `summary.tex`.
-pub fn overall_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
+/// Table of [`overall_table`] with caption and label for a paper: `summary.tex`.
+pub fn overall_paper_table(summary: &Summary, stored: &StoredStudy) -> Table {
     let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
     let scope = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
     let caption = format!(
@@ -197,16 +197,16 @@ pub fn overall_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
          heading error on an unseen manoeuvre.",
         error_reference(&stored.design)
     );
-    overall(summary, &stored.design).titled(caption).labelled(name.as_str())
+    overall_table(summary, &stored.design).titled(caption).labelled(name.as_str())
 }
 
 /// Every method against the reference on the same trials, with caption and label: the second table of `summary.tex`.
-pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
+pub fn comparison_paper_table(summary: &Summary, stored: &StoredStudy) -> Table {
     let (design, name) = (&stored.design, &stored.manifest.name);
-    let mut head = head(design).counts(["trials"]);
+    let mut head = cell_and_method_head(design).counts(["trials"]);
     for index in ["K", "T"] {
-        head = head.numbers([format!("{index} rms ratio")]).interval();
-        head = head.numbers([format!("{index} closer")]).unit("%").interval();
+        head = head.numbers([format!("{index} rms ratio")]).interval95();
+        head = head.numbers([format!("{index} closer")]).unit("%").interval95();
     }
     let mut table = Table::new(head);
     for line in &summary.comparisons {
@@ -228,8 +228,8 @@ pub fn pairs_for_paper(summary: &Summary, stored: &StoredStudy) -> Table {
 }
 
 /// Every method against the reference on the same trials: `pairs.csv`.
-pub fn pairs(lines: &[ReferenceComparison], reference: &MethodName, design: &Design) -> Table {
-    let mut head = head(design).texts(["reference"]).counts(["trials"]);
+pub fn comparison_table(lines: &[ReferenceComparison], reference: &MethodName, design: &Design) -> Table {
+    let mut head = cell_and_method_head(design).texts(["reference"]).counts(["trials"]);
     for index in ["K", "T"] {
         for (figure, unit) in [("rms difference", "%"), ("rms ratio", ""), ("closer", "%")] {
             head = with_ends(head, &format!("{index} {figure}"), unit);
@@ -262,15 +262,15 @@ fn interval(figure: Option<Statistic>) -> String {
 }
 
 /// Reasons of failed trials with their counts, one line per cell and method.
-pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
-    let line = |cell: usize, method: usize, performance: &Performance| {
+pub fn failure_lines(summary: &Summary, design: &Design) -> Vec<String> {
+    let line = |cell: usize, method: usize, performance: &MethodPerformance| {
         let reasons: Vec<String> =
-            performance.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
+            performance.failure_counts.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
         let place = design.cells[cell].labels.join(", ");
         let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
         let method = &design.methods[method].label;
         format!("{place}{method}: {} of {} failed ({})", performance.failed(), performance.trials, reasons.join(", "))
     };
-    let failing = summary.methods.iter().filter(|line| !line.performance.failures.is_empty());
+    let failing = summary.methods.iter().filter(|line| !line.performance.failure_counts.is_empty());
     failing.map(|summary| line(summary.cell, summary.method, &summary.performance)).collect()
 }

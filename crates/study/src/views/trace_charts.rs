@@ -3,13 +3,15 @@
 use document::names;
 use std::collections::BTreeSet;
 
-use campaign::scenario::{HULL, TRACE};
+use campaign::scenario::{HULL_ID, TRACE_ID};
 use report::figures::{
     AxisSpec, CellMap, Layer, MapCell, NamedRows, Outline, PanelGroup, PanelRow, Panels, Pen, RowItem, RowKind,
     RowsColumn, Shades, TickRule,
 };
 use report::number::significant;
-use report::palette::{BEFORE, CurveStyle, DIMENSION, HEADING, INK, Marker, RECORD, RGBColor, RUDDER, SOLID};
+use report::palette::{
+    CurveStyle, DIMENSION_LINE, HEADING, INK, MODEL_BEFORE, Marker, RECORD, RGBColor, RUDDER, SOLID,
+};
 use report::{CurveOrigin, PlotCurve};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
@@ -25,16 +27,16 @@ const NOTHING: &str = "nothing";
 /// Confusion matrices with their names. A row is the missing effect of the ships of one or more cells. There is one
 /// matrix for every combination of the other axes if the first axis decides the missing effect, and one for ships that
 /// lack several effects.
-pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
+pub fn confusion_matrices(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellMap)> {
     let other_labels = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
-    let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
+    let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing_effects).collect::<BTreeSet<_>>().len();
     let mut groups = grouped(lines, |line| other_labels(line));
     if groups.iter().any(|(_, group)| kinds(group) < 2) {
         groups = vec![(String::new(), lines.iter().collect())];
     }
     let mut matrices = Vec::new();
     for (name, group) in groups {
-        let (several, single): (Vec<_>, Vec<_>) = group.into_iter().partition(|line| line.missing.len() > 1);
+        let (several, single): (Vec<_>, Vec<_>) = group.into_iter().partition(|line| line.missing_effects.len() > 1);
         for (kind, lines) in [("", single), ("several", several)] {
             if lines.len() > 1 {
                 let name_parts = [name.as_str(), kind].into_iter().filter(|word| !word.is_empty());
@@ -46,39 +48,41 @@ pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, CellM
 }
 
 fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
-    let name = |line: &&TraceSummary| match &line.missing[..] {
+    let name = |line: &&TraceSummary| match &line.missing_effects[..] {
         [] => NOTHING.to_owned(),
         _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
-        missing => names::effects(missing, " + "),
+        missing => names::effect_names(missing, " + "),
     };
     let rows = grouped(lines.iter().copied(), name);
     // Columns are in the order of the rows, so that correct names are on the diagonal.
-    let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
-    let named = missing.chain(lines.iter().flat_map(|line| line.named.keys())).map(String::as_str);
-    let is_silent = lines.iter().any(|line| line.without_names > 0 || line.missing.is_empty());
+    let missing =
+        rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing_effects).filter(|id| *id != HULL_ID);
+    let named = missing.chain(lines.iter().flat_map(|line| line.named_effect_counts.keys())).map(String::as_str);
+    let is_silent = lines.iter().any(|line| line.nothing_named_count > 0 || line.missing_effects.is_empty());
     let columns = distinct(is_silent.then_some(NOTHING).into_iter().chain(named));
     let cell = |lines: &[&TraceSummary], id: &str| {
         let count = |line: &&TraceSummary| match id {
-            NOTHING => line.without_names,
-            id => line.named.get(id).copied().unwrap_or(0),
+            NOTHING => line.nothing_named_count,
+            id => line.named_effect_counts.get(id).copied().unwrap_or(0),
         };
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
         let named = wilson_share(lines.iter().map(count).sum(), trials).map(|share| share.times(100.0));
-        let is_right = lines[0].missing.iter().any(|lack| lack == id) || (id == NOTHING && lines[0].missing.is_empty());
-        let of_alias: u64 = lines.iter().filter_map(|line| line.aliases.get(id)).sum();
+        let is_right = lines[0].missing_effects.iter().any(|lack| lack == id)
+            || (id == NOTHING && lines[0].missing_effects.is_empty());
+        let of_alias: u64 = lines.iter().filter_map(|line| line.named_alias_counts.get(id)).sum();
         let is_alias = 2 * of_alias > lines.iter().map(count).sum();
         MapCell {
             value: Some(named.map_or(0.0, |share| share.value)),
             interval: named.and_then(|share| share.ci95),
             outline: if is_right { Some(Outline::Correct) } else { is_alias.then_some(Outline::Alias) },
-            trials,
+            trial_count: trials,
         }
     };
     let trials = |lines: &[&TraceSummary]| lines.iter().map(|line| line.trials).sum::<u64>();
     let cells = rows.iter().map(|(_, lines)| columns.iter().map(|id| cell(lines, id)).collect());
     CellMap {
-        titles: [String::from("named by the trace"), String::from("missing")],
-        columns: columns.iter().map(|id| names::effect(id)).collect(),
+        axis_titles: [String::from("named by the trace"), String::from("missing")],
+        columns: columns.iter().map(|id| names::effect_name(id)).collect(),
         // No line break within the count.
         rows: rows.iter().map(|(name, lines)| format!("{name} (n\u{a0}=\u{a0}{})", trials(lines))).collect(),
         shades: Shades::Shares,
@@ -93,22 +97,24 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> CellMap {
 /// Comparison of several traces over all ships whose effects are known: the share of trials with exact names, of ships
 /// that lack an effect, and the share of trials with a false name. `None` for one trace, or if no ship lacks an
 /// effect.
-pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
+pub fn trace_comparison_rows(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let listed: Vec<&TraceSummary> = lines.iter().filter(|line| !line.is_hull()).collect();
     let rules = grouped(listed, |line| line.method);
     if rules.len() < 2 {
         return None;
     }
     let sum = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
-        lines.iter().filter(|line| !lacks || !line.missing.is_empty()).map(|line| count(line)).sum::<u64>()
+        lines.iter().filter(|line| !lacks || !line.missing_effects.is_empty()).map(|line| count(line)).sum::<u64>()
     };
     let trials_of = |lines: &[&TraceSummary], lacks: bool| sum(lines, |line| line.trials, lacks);
     let share_of = |lines: &[&TraceSummary], count: fn(&TraceSummary) -> u64, lacks: bool| {
         wilson_share(sum(lines, count, lacks), trials_of(lines, lacks)).map(|all| all.times(100.0))
     };
     let of_rule = |(method, lines): &(usize, Vec<&TraceSummary>)| {
-        let (wrong, exact) =
-            (share_of(lines, |line| line.falsely_named, false)?, share_of(lines, |line| line.exactly_named, true)?);
+        let (wrong, exact) = (
+            share_of(lines, |line| line.falsely_named_count, false)?,
+            share_of(lines, |line| line.exactly_named_count, true)?,
+        );
         Some((design.methods[*method].label.as_str(), wrong, exact))
     };
     let counts = [false, true].map(|lacks| trials_of(&rules[0].1, lacks));
@@ -117,14 +123,14 @@ pub fn rules(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
 
 /// Share of false names of several traces on ships without a missing effect, with 95 % Wilson intervals, whose upper
 /// end bounds the rate of false names; `None` for one trace, or if a ship lacks an effect.
-pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
+pub fn false_positive_rows(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows> {
     let rules = grouped(lines, |line| line.method);
-    if rules.len() < 2 || lines.iter().any(|line| !line.missing.is_empty()) {
+    if rules.len() < 2 || lines.iter().any(|line| !line.missing_effects.is_empty()) {
         return None;
     }
-    let style = CurveOrigin::Method(TRACE.to_owned()).style();
+    let style = CurveOrigin::Method(TRACE_ID.to_owned()).style();
     let counted = |(method, lines): &(usize, Vec<&TraceSummary>)| {
-        let counts = [|line: &&TraceSummary| line.falsely_named, |line: &&TraceSummary| line.trials];
+        let counts = [|line: &&TraceSummary| line.falsely_named_count, |line: &&TraceSummary| line.trials];
         (design.methods[*method].label.as_str(), counts.map(|count| lines.iter().map(count).sum::<u64>()))
     };
     let mut rules: Vec<(&str, [u64; 2])> = rules.iter().map(counted).collect();
@@ -151,7 +157,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
     let column = RowsColumn {
         x: AxisSpec::decimal("trials with a false name [%]"),
         rows: rules.iter().map(row).collect::<Option<_>>()?,
-        zero: true,
+        has_zero_line: true,
         ..RowsColumn::default()
     };
     Some(NamedRows {
@@ -166,7 +172,7 @@ pub fn false_names(design: &Design, lines: &[TraceSummary]) -> Option<NamedRows>
 /// Rules as rows: one row for every variant after the comma of their labels, with every kind before it; `all` trials,
 /// of which `lacking` are of ships that lack an effect.
 fn trade_off(rules: &[(&str, Statistic, Statistic)], [all, lacking]: [u64; 2]) -> NamedRows {
-    const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION];
+    const COLOURS: [RGBColor; 3] = [HEADING, RUDDER, DIMENSION_LINE];
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Diamond];
     let parts: Vec<(&str, &str)> = rules.iter().map(|(name, ..)| name.split_once(", ").unwrap_or(("", name))).collect();
     let kinds = distinct(parts.iter().map(|(kind, _)| *kind));
@@ -174,7 +180,7 @@ fn trade_off(rules: &[(&str, Statistic, Statistic)], [all, lacking]: [u64; 2]) -
     let column = |title: String, share: fn(&(&str, Statistic, Statistic)) -> Statistic| {
         let item = |(rule, (kind, _)): (&(&str, Statistic, Statistic), &(&str, &str))| {
             let number = kinds.iter().position(|other| other == kind).unwrap_or(0) % COLOURS.len();
-            let style = CurveStyle { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, hollow: false };
+            let style = CurveStyle { colour: COLOURS[number], marker: MARKERS[number], dash: SOLID, is_hollow: false };
             let share = share(rule);
             let number = Some(format!("{} %", significant(share.value, 2)));
             RowItem { number, ..RowItem::mark_below(*kind, style, share.value, share.ci95) }
@@ -214,12 +220,12 @@ type MeasuredShare = (f64, f64, Option<[f64; 2]>);
 
 /// Measured shares by name over the layer of the theory.
 fn shares(x: AxisSpec, y_title: &str, series: Vec<(String, Vec<MeasuredShare>)>, theory: Layer) -> Panels {
-    const COLOURS: [RGBColor; MAX_SERIES] = [HEADING, BEFORE, RUDDER, DIMENSION, RECORD, INK];
+    const COLOURS: [RGBColor; MAX_SERIES] = [HEADING, MODEL_BEFORE, RUDDER, DIMENSION_LINE, RECORD, INK];
     const MARKERS: [Marker; MAX_SERIES] =
         [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down, Marker::Star];
     let styles = COLOURS.into_iter().zip(MARKERS);
     let marks = |((name, points), (colour, marker)): ((String, Vec<MeasuredShare>), (RGBColor, Marker))| {
-        Layer::marks(name, CurveStyle { colour, marker, dash: SOLID, hollow: false }, points)
+        Layer::marks(name, CurveStyle { colour, marker, dash: SOLID, is_hollow: false }, points)
     };
     let layers = std::iter::once(theory).chain(series.into_iter().zip(styles).map(marks)).collect();
     let row = PanelRow::new(AxisSpec::new(y_title, TickRule::Percent), 0.42);
@@ -235,26 +241,28 @@ const RANGES_PER_DECADE: f64 = 3.0;
 /// Chart of the detection power against the expected 2 ln Λ of the truth over the nearest first-order response, for
 /// response models with one missing effect. A few cells are shown under the name of the effect; more are pooled over
 /// ranges of 2 ln Λ. `None` without such a cell, or if the effect is named in every trial.
-pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
+pub fn detection_power_curves(lines: &[TraceSummary]) -> Option<Panels> {
     let is_shown = |line: &&TraceSummary| {
-        line.missing.len() == 1
+        line.missing_effects.len() == 1
             && !line.is_hull()
             && line.mean_expected_2_ln_lambda.is_some_and(|expected| expected > MIN_RATIO)
     };
     let shown: Vec<&TraceSummary> = lines.iter().filter(is_shown).collect();
-    if shown.iter().all(|line| line.all_named == line.trials) {
+    if shown.iter().all(|line| line.all_named_count == line.trials) {
         return None;
     }
     let are_few = shown.len() <= MAX_SERIES;
     let expected = |line: &TraceSummary| line.mean_expected_2_ln_lambda.unwrap_or(MIN_RATIO);
-    let name = |line: &&TraceSummary| match (are_few, is_time_dependent(&line.missing[0])) {
-        (true, _) => names::effect(&line.missing[0]),
+    let name = |line: &&TraceSummary| match (are_few, is_time_dependent(&line.missing_effects[0])) {
+        (true, _) => names::effect_name(&line.missing_effects[0]),
         (_, false) => String::from("an effect of the ship or its gear"),
         (_, true) => String::from("a moment that depends on time"),
     };
     let point = |lines: &[&TraceSummary]| {
-        let share =
-            wilson_share(lines.iter().map(|line| line.all_named).sum(), lines.iter().map(|line| line.trials).sum())?;
+        let share = wilson_share(
+            lines.iter().map(|line| line.all_named_count).sum(),
+            lines.iter().map(|line| line.trials).sum(),
+        )?;
         let middle = (lines.iter().map(|line| expected(line).ln()).sum::<f64>() / lines.len() as f64).exp();
         let share = share.times(100.0);
         Some((middle, share.value, share.ci95))
@@ -289,17 +297,17 @@ pub fn detection_power(lines: &[TraceSummary]) -> Option<Panels> {
 
 /// Number of trials with one missing effect in which it was named, and of all such trials.
 pub fn single_effect_counts(lines: &[TraceSummary]) -> [u64; 2] {
-    let single = || lines.iter().filter(|line| line.missing.len() == 1 && !line.is_hull());
-    [single().map(|line| line.all_named).sum(), single().map(|line| line.trials).sum()]
+    let single = || lines.iter().filter(|line| line.missing_effects.len() == 1 && !line.is_hull());
+    [single().map(|line| line.all_named_count).sum(), single().map(|line| line.trials).sum()]
 }
 
 /// Finding: how many of the effects with the highest probabilities were present.
 pub fn present_effects_finding(lines: &[TraceSummary]) -> String {
     let ranges = calibration_bins(lines);
-    let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effects > 0) else {
+    let Some((place, surest)) = ranges.iter().enumerate().rfind(|(_, bin)| bin.effect_count > 0) else {
         return String::from("No effect has a probability");
     };
-    let CalibrationBin { present, effects, .. } = surest;
+    let CalibrationBin { present_count: present, effect_count: effects, .. } = surest;
     format!(
         "Of {effects} effects with a probability above {} %, {present} were there",
         100.0 * CALIBRATION_BIN_EDGES[place]
@@ -311,20 +319,20 @@ const MANY: u64 = 30;
 
 /// Reliability of probabilities, for traces of ships whose effects are known: the share of present effects over the
 /// mean probability; `None` if no effect was present.
-pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
+pub fn reliability_diagram(lines: &[TraceSummary]) -> Option<Panels> {
     let point = |range: &CalibrationBin| {
-        let share = wilson_share(range.present, range.effects)?.times(100.0);
-        Some((100.0 * range.sum / range.effects as f64, share.value, share.ci95))
+        let share = wilson_share(range.present_count, range.effect_count)?.times(100.0);
+        Some((100.0 * range.probability_sum / range.effect_count as f64, share.value, share.ci95))
     };
     let ranges = calibration_bins(lines);
-    let points = |few: bool| ranges.iter().filter(|bin| (bin.effects < MANY) == few).filter_map(point).collect();
+    let points = |few: bool| ranges.iter().filter(|bin| (bin.effect_count < MANY) == few).filter_map(point).collect();
     let series =
         [(format!("{MANY} effects and more"), points(false)), (format!("fewer than {MANY} effects"), points(true))];
     let series = series.into_iter().filter(|(_, points): &(_, Vec<MeasuredShare>)| !points.is_empty()).collect();
     let diagonal = PlotCurve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
     let x = AxisSpec::new("mean probability given [%]", TickRule::Percent);
     let theory = Layer::line("calibrated", diagonal, Pen::new(INK).width(0.9));
-    ranges.iter().any(|bin| bin.present > 0).then(|| shares(x, "present [%]", series, theory))
+    ranges.iter().any(|bin| bin.present_count > 0).then(|| shares(x, "present [%]", series, theory))
 }
 
 /// Calibration of the probabilities of effects: pairs of effect and trial by bins of [`CALIBRATION_BIN_EDGES`], summed
@@ -338,7 +346,7 @@ pub fn calibration_bins(lines: &[TraceSummary]) -> Vec<CalibrationBin> {
 }
 
 fn is_time_dependent(id: &str) -> bool {
-    ship::effects::all().iter().any(|effect| effect.id() == id && effect.is_time_dependent())
+    ship::effects::all_effects().iter().any(|effect| effect.id() == id && effect.is_time_dependent())
 }
 
 /// Probability that a noncentral χ² exceeds a limit: a Poisson mixture of central ones.
@@ -360,29 +368,37 @@ mod tests {
         let name = |label: &str| MethodName { id: "trace".into(), label: label.into() };
         let design = Design { methods: vec![name("bic, 0.5"), name("bic, 0.9")], ..Design::default() };
         let line = |method, missing: &[&str], exactly_named, falsely_named| TraceSummary {
-            missing: missing.iter().map(|&id| id.to_owned()).collect(),
-            ..TraceSummary { method, trials: 2, exactly_named, falsely_named, ..TraceSummary::default() }
+            missing_effects: missing.iter().map(|&id| id.to_owned()).collect(),
+            ..TraceSummary {
+                method,
+                trials: 2,
+                exactly_named_count: exactly_named,
+                falsely_named_count: falsely_named,
+                ..TraceSummary::default()
+            }
         };
         let lines =
             [line(0, &["wave_yaw"], 1, 1), line(0, &[], 2, 0), line(1, &["wave_yaw"], 0, 0), line(1, &[], 2, 0)];
-        let data = rules(&design, &lines).expect("two rules");
+        let data = trace_comparison_rows(&design, &lines).expect("two rules");
         assert_eq!(data.names, ["0.5", "0.9"]);
         let shares = |column: usize, row: usize| match &data.columns[column].rows[row][..] {
             [RowItem { name: Some(kind), kind: RowKind::Mark(_, share, _), .. }] if kind == "bic" => *share,
             _ => panic!(),
         };
         assert_eq!([shares(0, 0), shares(0, 1), shares(1, 0), shares(1, 1)], [25.0, 0.0, 50.0, 0.0]);
-        assert!(rules(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
-        assert!(rules(&design, &lines[..2]).is_none() && false_names(&design, &lines).is_none());
+        assert!(trace_comparison_rows(&design, &[line(0, &[], 1, 1), line(1, &[], 2, 0)]).is_none());
+        assert!(
+            trace_comparison_rows(&design, &lines[..2]).is_none() && false_positive_rows(&design, &lines).is_none()
+        );
         // For ships without a missing effect the bound is shown: Wilson's of 0 of 2.
-        let clean = false_names(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
+        let clean = false_positive_rows(&design, &[line(0, &[], 2, 0), line(1, &[], 1, 1)]).expect("two rules");
         let text = |row: usize| clean.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("0 of 2: up to 66 %"), Some("1 of 2: up to 91 %")));
         // Rules with equal counts have one row for each variant.
         let labels = ["bic, long list", "posterior, long list", "bic, short list", "posterior, short list"];
         let design = Design { methods: labels.map(name).into(), ..Design::default() };
         let lines: Vec<TraceSummary> = (0..4).map(|method| line(method, &[], 1, u64::from(method < 2))).collect();
-        let clean = false_names(&design, &lines).expect("four rules");
+        let clean = false_positive_rows(&design, &lines).expect("four rules");
         assert_eq!(
             (&clean.names[..], clean.columns[0].rows.len()),
             (&[String::from("long list"), "short list".into()][..], 2)
@@ -393,17 +409,17 @@ mod tests {
     #[test]
     fn power_is_drawn_where_something_is_missed() {
         let line = |cell: usize, all_named| TraceSummary {
-            missing: vec![String::from(if cell == 0 { "wave_yaw" } else { "steering_lag" })],
+            missing_effects: vec![String::from(if cell == 0 { "wave_yaw" } else { "steering_lag" })],
             ..TraceSummary {
                 cell,
                 trials: 4,
-                all_named,
+                all_named_count: all_named,
                 mean_expected_2_ln_lambda: Some(20.0),
                 ..TraceSummary::default()
             }
         };
         let marks = |lines: Vec<TraceSummary>| -> Option<Vec<(String, Vec<f64>)>> {
-            let layers = detection_power(&lines)?.groups.remove(0).panels.remove(0).layers.split_off(1);
+            let layers = detection_power_curves(&lines)?.groups.remove(0).panels.remove(0).layers.split_off(1);
             Some(layers.into_iter().map(|layer| (layer.name.unwrap_or_default(), layer.curve.y)).collect())
         };
         let named = |name: &str, y: &[f64]| (name.to_owned(), y.to_vec());
@@ -411,7 +427,7 @@ mod tests {
         assert_eq!(marks(vec![line(0, 4), line(1, 1), line(2, 2)]), Some(few));
         let many = marks((0..8).map(|cell| line(cell, u64::from(cell > 3))).collect()).expect("some are missed");
         assert_eq!(many.iter().map(|(_, y)| y.len()).sum::<usize>(), many.len());
-        assert!(marks(vec![line(0, 4), line(1, 4)]).is_none() && reliability(&[line(0, 4)]).is_none());
+        assert!(marks(vec![line(0, 4), line(1, 4)]).is_none() && reliability_diagram(&[line(0, 4)]).is_none());
     }
 
     /// P(χ'²₁(λ) > c) = P(|Z + √λ| > √c); for λ = 9, c = 4: Φ(1) + Φ(−5).

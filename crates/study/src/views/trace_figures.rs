@@ -4,8 +4,8 @@
 use campaign::curves::{angle_curve_deg, degrees};
 use document::names;
 use document::trace::{
-    Document, EffectEntry, MissingMomentEntry, ModelReplayErrors, Outcome, RecordEntry, RecordReplayErrors,
-    TraceDocument,
+    AnalysisDocument, CandidateOutcome, EffectEntry, MissingMomentEntry, ModelReplayErrors, RecordEntry,
+    RecordReplayErrors, TraceDocument,
 };
 use estimation::residuals::{GappedSeries, SpectralLine, periodogram};
 use identify::replay::Replay;
@@ -20,9 +20,9 @@ use ship::angle::to_deg;
 use trial::{Trial, ZigZag};
 
 use super::record_figures::{ModelOverTime, over_time};
-use super::trace_tables::term;
+use super::trace_tables::effect_text;
 use super::{innovation_figure, missing_moment};
-use crate::documents::curves::{TraceCurves, TracedRecord, slugs, suffix};
+use crate::documents::curves::{TraceCurves, TracedRecord, file_name_suffix, record_slugs};
 use crate::documents::missing_moment::MissingMomentCurves;
 
 /// Maximum ratio of the frequencies of neighbouring spectral lines that are averaged.
@@ -34,11 +34,16 @@ pub fn record_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<Pag
     let fitted = document.records.iter().zip(&curves.records).enumerate().filter(|(_, (entry, _))| !entry.held_out);
     let figure =
         |((number, (entry, record)), errors): ((usize, (&RecordEntry, &TracedRecord)), &RecordReplayErrors)| {
-            let name = names::record(&entry.name);
+            let name = names::record_name(&entry.name);
             let share = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
             let finding = format!("{name}: heading error of the whole replay × {share}");
             let caption = format!("{name}: heading, residual and rudder, with the 95 % band of the model after.");
-            PageFigure::new(format!("record{}", suffix(&stems, number)), finding, caption, record_fit(record, errors))
+            PageFigure::new(
+                format!("record{}", file_name_suffix(&stems, number)),
+                finding,
+                caption,
+                record_fit(record, errors),
+            )
         };
     fitted.zip(&document.trace.error.identification).map(figure).collect()
 }
@@ -47,9 +52,9 @@ pub fn record_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<Pag
 pub fn innovation_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<PageFigure> {
     let stems = document.names();
     let figure = |(number, record): (usize, &TracedRecord)| {
-        innovation_figure::figure(
-            format!("innovations{}", suffix(&stems, number)),
-            &names::record(&stems[number]),
+        innovation_figure::innovation_figure(
+            format!("innovations{}", file_name_suffix(&stems, number)),
+            &names::record_name(&stems[number]),
             record.innovations.as_ref()?,
         )
     };
@@ -61,16 +66,16 @@ pub fn moment_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<Pag
     let stems = document.names();
     let figure = |(entry, tables): (&MissingMomentEntry, _)| {
         let number = stems.iter().position(|name| *name == entry.record).unwrap_or(0);
-        let stem = format!("missing-moment-{}", slugs(&stems)[number]);
+        let stem = format!("missing-moment-{}", record_slugs(&stems)[number]);
         let curves = MissingMomentCurves::read(entry, tables);
         PageFigure::new(
             stem,
-            missing_moment::finding(entry),
-            missing_moment::sentence(entry),
-            missing_moment::figure(entry, &curves),
+            missing_moment::missing_moment_finding(entry),
+            missing_moment::missing_moment_sentence(entry),
+            missing_moment::missing_moment_figure(entry, &curves),
         )
     };
-    document.missing_moment.iter().zip(&curves.moments).map(figure).collect()
+    document.missing_moment.iter().zip(&curves.moment_tables).map(figure).collect()
 }
 
 /// Figures of the residuals of fitted records; held-out ones serve for validation only.
@@ -80,7 +85,7 @@ pub fn residual_figures(document: &TraceDocument, curves: &TraceCurves) -> Vec<P
     for (number, (RecordEntry { name, held_out, .. }, record)) in
         document.records.iter().zip(&curves.records).enumerate()
     {
-        let (suffix, name) = (suffix(&stems, number), names::record(name));
+        let (suffix, name) = (file_name_suffix(&stems, number), names::record_name(name));
         if !held_out {
             let caption = format!(
                 "{name}: the residual of the whole replay against heading, yaw rate and rudder, and its spectrum."
@@ -110,7 +115,7 @@ pub fn models_over_time(record: &TracedRecord, rms: Option<[f64; 2]>) -> Vec<Mod
             angle_curve_deg(&after.time, &band.iter().enumerate().map(end).collect::<Vec<f64>>())
         })
     };
-    let band = record.band.as_ref().map(|half| [about(half, &|row| after.heading[row]), about(half, &|_| 0.0)]);
+    let band = record.half_width95.as_ref().map(|half| [about(half, &|row| after.heading[row]), about(half, &|_| 0.0)]);
     let model = |(number, (origin, replay)): (usize, (CurveOrigin, &Replay))| ModelOverTime {
         band: band.clone().filter(|_| origin == CurveOrigin::After),
         origin,
@@ -146,19 +151,28 @@ pub fn heading_error_ratio<'a>(all: impl Iterator<Item = &'a RecordReplayErrors>
 /// Maximum length of a bar of ΔBIC, in medians of all bars.
 const MAX_BAR_MEDIANS: f64 = 30.0;
 
-fn outcome_style(outcome: Outcome) -> (&'static str, CurveStyle) {
+fn outcome_style(outcome: CandidateOutcome) -> (&'static str, CurveStyle) {
     let (name, colour) = match outcome {
-        Outcome::Added => ("named", HEADING),
-        Outcome::Alias => ("indistinguishable from a named one", RUDDER),
-        Outcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
-        Outcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
+        CandidateOutcome::Added => ("named", HEADING),
+        CandidateOutcome::Alias => ("indistinguishable from a named one", RUDDER),
+        CandidateOutcome::Rejected => ("not named", RGBColor(0x8A, 0x8A, 0x8A)),
+        CandidateOutcome::NotObservable => ("not observable", RGBColor(0xC4, 0xC4, 0xC4)),
     };
-    (name, CurveStyle { colour, marker: Marker::Square, dash: SOLID, hollow: outcome == Outcome::NotObservable })
+    (
+        name,
+        CurveStyle {
+            colour,
+            marker: Marker::Square,
+            dash: SOLID,
+            is_hollow: outcome == CandidateOutcome::NotObservable,
+        },
+    )
 }
 
 /// Names of the effects with their probabilities.
-fn named_effects(trace: &Document) -> String {
-    let name = |effect: &EffectEntry| format!("{} (p = {})", names::effect(&effect.id), fixed(effect.probability, 3));
+fn named_effects(trace: &AnalysisDocument) -> String {
+    let name =
+        |effect: &EffectEntry| format!("{} (p = {})", names::effect_name(&effect.id), fixed(effect.probability, 3));
     let named: Vec<String> = trace.effects.iter().map(name).collect();
     match &named[..] {
         [] => format!("None of {} effects is named", trace.candidates.len()),
@@ -172,36 +186,40 @@ pub fn evidence(document: &TraceDocument) -> PageFigure {
     let trace = &document.trace;
     let single = |id: &str| trace.candidates.iter().find(|entry| entry.id == id).map(|entry| entry.probability);
     let named = trace.effects.iter().map(|effect| {
-        let (name, alone) =
-            (term(&effect.id, &effect.form, effect.only.as_ref()), single(&effect.id).unwrap_or(effect.probability));
+        let (name, alone) = (
+            effect_text(&effect.id, &effect.form, effect.only.as_ref()),
+            single(&effect.id).unwrap_or(effect.probability),
+        );
         let text = match effect.aliases.is_empty() {
             true => fixed(alone, 3),
             false => format!("{} ({})", fixed(alone, 3), fixed(effect.probability, 3)),
         };
-        (name, (alone, text), Some(effect.delta_bic), Outcome::Added)
+        (name, (alone, text), Some(effect.delta_bic), CandidateOutcome::Added)
     });
     let silent = trace.candidates.iter().filter(|entry| trace.effects.iter().all(|effect| effect.id != entry.id));
     let mut silent: Vec<_> = silent
         .map(|entry| {
             let best = entry.forms.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
-            let name =
-                best.map_or_else(|| names::effect(&entry.id), |best| term(&entry.id, &best.form, best.only.as_ref()));
+            let name = best.map_or_else(
+                || names::effect_name(&entry.id),
+                |best| effect_text(&entry.id, &best.form, best.only.as_ref()),
+            );
             (name, (entry.probability, fixed(entry.probability, 3)), entry.delta_bic, entry.outcome)
         })
         .collect();
     silent.sort_by(|a, b| b.1.0.total_cmp(&a.1.0));
     let rows: Vec<_> = named.chain(silent).collect();
-    let bar = |value: f64, text: String, outcome: Outcome| {
+    let bar = |value: f64, text: String, outcome: CandidateOutcome| {
         let (name, style) = outcome_style(outcome);
         vec![RowItem { number: Some(text), ..RowItem::new(name, RowKind::Bar(style, value)) }]
     };
-    let column = |x: AxisSpec, rows| RowsColumn { x, rows, zero: true, ..RowsColumn::default() };
+    let column = |x: AxisSpec, rows| RowsColumn { x, rows, has_zero_line: true, ..RowsColumn::default() };
     let probability = rows.iter().map(|(_, (value, text), _, outcome)| bar(*value, text.clone(), *outcome));
     let change = rows.iter().map(|(_, _, bic, outcome)| {
         bar(bic.unwrap_or(0.0), bic.map_or_else(|| MISSING.to_owned(), |bic| significant(bic, 3)), *outcome)
     });
     let has_group = trace.effects.iter().any(|effect| !effect.aliases.is_empty());
-    let cut = AxisSpec::decimal("ΔBIC (negative: it helps)").within(MAX_BAR_MEDIANS, Some(0.0));
+    let cut = AxisSpec::decimal("ΔBIC (negative: it helps)").limited_around(MAX_BAR_MEDIANS, Some(0.0));
     let columns = vec![column(AxisSpec::decimal("probability"), probability.collect()), column(cut, change.collect())];
     let names = rows.iter().map(|row| row.0.clone()).collect();
     let data = NamedRows { names, columns, ..NamedRows::default() };
@@ -222,7 +240,7 @@ fn residual(record: &TracedRecord) -> Panels {
             let line = LayerKind::Line(Pen::new(colour).width(0.9));
             Layer::new(origin.label(), curve_of(replay), if joined { line } else { LayerKind::Dots(colour) })
         };
-        let row = PanelRow { zero: y.tick_rule != TickRule::Logarithmic, ..PanelRow::new(y, 0.17) };
+        let row = PanelRow { has_zero_line: y.tick_rule != TickRule::Logarithmic, ..PanelRow::new(y, 0.17) };
         PanelGroup { is_half: true, ..PanelGroup::over(x, vec![(row, replays_by_origin(record).map(layer).into())]) }
     };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
@@ -267,7 +285,7 @@ fn power_spectrum(residual: &GappedSeries) -> PlotCurve {
     let points = groups.into_iter().map(|lines| {
         let count = lines.len() as f64;
         let frequency = lines.iter().map(|line| line.frequency).sum::<f64>() / count;
-        (frequency, lines.iter().map(|line| line.share).sum::<f64>() / count * square / width)
+        (frequency, lines.iter().map(|line| line.mean_square_share).sum::<f64>() / count * square / width)
     });
     let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
     PlotCurve::new(x, y)

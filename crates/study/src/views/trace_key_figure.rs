@@ -8,6 +8,7 @@ use report::figures::{AxisSpec, Layer, LayerKind, LayeredPanel, PanelGroup, Pane
 use report::number::{counted, significant};
 use report::palette::SOLID;
 use report::{CurveOrigin, PageFigure};
+use ship::dynamics::RegressorChannel;
 
 use super::record_figures::heading_and_residual;
 use super::trace_figures::{heading_error_ratio, heading_rms_deg, models_over_time};
@@ -18,7 +19,7 @@ const MAX_NAMES: usize = 3;
 
 /// Finding: the missing effects, and the error ratios of fitted and held-out records.
 fn finding(document: &TraceDocument) -> String {
-    let mut ids: Vec<String> = document.trace.effects.iter().map(|effect| names::effect(&effect.id)).collect();
+    let mut ids: Vec<String> = document.trace.effects.iter().map(|effect| names::effect_name(&effect.id)).collect();
     ids.dedup();
     let more = ids.len().saturating_sub(MAX_NAMES);
     if more > 0 {
@@ -112,12 +113,31 @@ fn all_held(document: &TraceDocument) -> PanelGroup {
     );
     let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
     let panel = LayeredPanel { head: Some(head), layers, ..LayeredPanel::default() };
-    let names = order.iter().map(|(record, _)| names::record(&record.name)).collect();
+    let names = order.iter().map(|(record, _)| names::record_name(&record.name)).collect();
     PanelGroup { x: vec![AxisSpec::of_names(names)], rows: vec![row], panels: vec![panel], ..PanelGroup::default() }
 }
 
+/// Remark on the recorded channels that the models replay: the rudder, and the channels that the named effects use.
+fn inputs_remark(document: &TraceDocument) -> String {
+    const CHANNELS: [(RegressorChannel, &str); 4] = [
+        (RegressorChannel::Speed, "speed"),
+        (RegressorChannel::Sway, "sway"),
+        (RegressorChannel::Wind, "wind"),
+        (RegressorChannel::Propeller, "propeller rate"),
+    ];
+    let named = &document.trace.effects;
+    let uses = |channel: RegressorChannel| {
+        let of_id =
+            |id: &str| ship::effects::all_effects().iter().any(|effect| effect.id() == id && effect.uses(channel));
+        named.iter().any(|effect| of_id(&effect.id))
+    };
+    let channels = CHANNELS.iter().filter(|(channel, _)| uses(*channel)).map(|(_, name)| *name);
+    let inputs: Vec<&str> = std::iter::once("rudder").chain(channels).collect();
+    format!("Inputs of the models on every record: its recorded {}.", inputs.join(", "))
+}
+
 /// Key figure of a trace; `None` if no record was held out.
-pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
+pub fn trace_key_figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigure> {
     let error = &document.trace.error;
     let number = nearest(&error.validation)?;
     let all = || document.records.iter().zip(&curves.records);
@@ -132,9 +152,10 @@ pub fn figure(document: &TraceDocument, curves: &TraceCurves) -> Option<PageFigu
         column(held, &error.validation[number], ['c', 'd'], &role),
     ];
     groups.extend((error.validation.len() > 1).then(|| all_held(document)));
-    let caption = "(a), (b): a record that was fitted. (c), (d): one of which nothing but the initial state was fitted, with the \
-                   ratio nearest to that of all that were held out. (a), (c): the heading with the best first-order response, and \
-                   with the effects that were found and the 95 % band. (b), (d): the residuals of both. (e): the heading errors of both on \
-                   every held-out record, the worst first.";
-    Some(PageFigure::new("hero", finding(document), caption, Panels { groups, ..Panels::default() }))
+    let caption = "(a), (b): a fitted record. (c), (d): the held-out record whose ratio of errors is nearest to the ratio of all \
+                   held-out records; only its initial state was fitted. (a), (c): the heading, the best first-order response, and \
+                   the model with the effects that were found, with its 95 % band. (b), (d): the residuals of both models. (e): \
+                   the heading errors of both on every held-out record, the worst first.";
+    let panels = Panels { groups, note: Some(inputs_remark(document)), ..Panels::default() };
+    Some(PageFigure::new("hero", finding(document), caption, panels))
 }

@@ -4,9 +4,9 @@ use askama::Template;
 use campaign::statistics::distinct;
 use document::identified_ship::ValidityRange;
 use document::names;
-use document::trace::{Outcome, ParameterEntry, PriorEntry, TraceDocument};
+use document::trace::{CandidateOutcome, ParameterEntry, PriorEntry, TraceDocument};
 use predict::steady::SteadyCurve;
-use report::markdown::text;
+use report::markdown::escaped_text;
 use report::number::{MISSING, fixed, significant};
 use report::{Page, PageFigure, PlacedFigures, Table, TableHead};
 use ship::ShortNumber;
@@ -28,12 +28,12 @@ use crate::scales::scale_name;
 const MAX_LISTED_TIMES: usize = 8;
 
 /// Text on the screen before and after the table of errors.
-pub fn around_table(document: &TraceDocument) -> [String; 2] {
+pub fn texts_around_table(document: &TraceDocument) -> [String; 2] {
     let trace = &document.trace;
     let mut before = format!("{}\n", trace.headline);
     before += &document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}\n"));
     if !trace.effects.is_empty() {
-        before += &format!("\n{}", tables::effects(document).to_text());
+        before += &format!("\n{}", tables::effect_table(document).to_text());
     }
     before += &format!("\n{}", indices::trace_table(document).to_text());
     let mut behind = String::new();
@@ -49,8 +49,10 @@ pub fn around_table(document: &TraceDocument) -> [String; 2] {
     }
     located(document, "").for_each(|sentence| behind += &format!("\n{sentence}"));
     behind += &odd(document);
-    behind +=
-        &document.earlier_trials.as_ref().map_or_else(String::new, |earlier| format!("\n{}", prior::sentence(earlier)));
+    behind += &document
+        .earlier_trials
+        .as_ref()
+        .map_or_else(String::new, |earlier| format!("\n{}", prior::earlier_trials_sentence(earlier)));
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
         behind += &format!("\nwarning: {warning}");
     }
@@ -59,9 +61,9 @@ pub fn around_table(document: &TraceDocument) -> [String; 2] {
 }
 
 /// Table of errors on all records.
-pub fn all_errors(document: &TraceDocument) -> Table {
+pub fn all_replay_errors_table(document: &TraceDocument) -> Table {
     let (fitted, judged) = document.errors();
-    tables::errors(&[fitted, judged].concat())
+    tables::replay_error_table(&[fitted, judged].concat())
 }
 
 /// Sentence on every effect given as a formula, with `mark` around its text.
@@ -130,8 +132,11 @@ fn outliers(document: &TraceDocument) -> Vec<String> {
 /// Sentence on every parameter at an end of its range.
 fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     let sentence = |parameter: &ParameterEntry| {
-        let only = parameter.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record(name)));
-        format!("{}{only} is at the end of its search range; the true value may lie beyond", tables::value(parameter))
+        let only = parameter.only.as_ref().map_or_else(String::new, |name| format!(" of {}", names::record_name(name)));
+        format!(
+            "{}{only} is at the end of its search range; the true value may lie beyond",
+            tables::parameter_text(parameter)
+        )
     };
     parameters.iter().filter(|parameter| parameter.at_bound).map(sentence).collect()
 }
@@ -165,7 +170,7 @@ struct TracePage<'a> {
 pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let (prior, overshoots) = (&document.trace.prior, overshoots::replayed_overshoots(document, curves));
     let fitted = document.records.iter().filter(|record| !record.held_out);
-    let named = fitted.map(|record| (names::record(&record.name), &record.trial_particulars));
+    let named = fitted.map(|record| (names::record_name(&record.name), &record.trial_particulars));
     let page = TracePage {
         document,
         title: title(document, curves),
@@ -175,11 +180,12 @@ pub fn page(document: &TraceDocument, curves: &TraceCurves, turns: Option<&(Vec<
         limits: limits(document, curves),
         noise: noise(document),
         located: located(document, "`").collect(),
-        errors: all_errors(document),
+        errors: all_replay_errors_table(document),
         formulas: formulas(document, "`").collect(),
         aliases: aliases(document),
         model: model(document),
-        odds: [prior.probability, prior.probability_of_time, prior.named_from].map(|share| significant(share, 2)),
+        odds: [prior.probability, prior.time_moment_probability, prior.min_named_probability]
+            .map(|share| significant(share, 2)),
         prior,
         figures: placed(document, curves, &overshoots, turns),
     };
@@ -195,19 +201,19 @@ fn placed(
 ) -> PlacedFigures<&'static str> {
     let mut placed = PlacedFigures::default();
     let mut records = figures::record_figures(document, curves).into_iter();
-    let hero = trace_key_figure::figure(document, curves);
-    match staircase::figure(document, curves) {
+    let hero = trace_key_figure::trace_key_figure(document, curves);
+    match staircase::staircase_figure(document, curves) {
         Some(stairs) => placed.put("first", [stairs]),
         None if hero.is_none() => placed.put("first", records.next()),
         None => {}
     }
-    placed.put("overshoots", overshoots::figure(document, overshoots));
+    placed.put("overshoots", overshoots::overshoot_figure(document, overshoots));
     placed.put("held out", hero);
     placed.put("held out", held_out::residual_figure(document, curves));
-    placed.put("held out", horizon::figure(document));
+    placed.put("held out", horizon::horizon_figure(document));
     placed.put("records", held_out::error_figure(document).into_iter().chain(records));
     placed.put("evidence", [figures::evidence(document)]);
-    placed.put("prior odds", prior_odds::figure(document));
+    placed.put("prior odds", prior_odds::prior_odds_figure(document));
     placed.put("innovations", figures::innovation_figures(document, curves));
     placed.put("moments", figures::moment_figures(document, curves));
     placed.put("further", turns.map(|(curves, seen)| {
@@ -237,8 +243,9 @@ fn title(document: &TraceDocument, curves: &TraceCurves) -> String {
 /// Physics of the effects of the staircase, a sentence each.
 fn physics(document: &TraceDocument) -> Vec<String> {
     let ids = document.staircase.iter().filter_map(|step| step.id.as_deref());
-    let sentence =
-        |id| Some(format!("**{}{}**: {}.", names::effect(id), unnamed_remark(document, id), names::physics(id)?));
+    let sentence = |id| {
+        Some(format!("**{}{}**: {}.", names::effect_name(id), unnamed_remark(document, id), names::effect_physics(id)?))
+    };
     distinct(ids).into_iter().filter_map(sentence).collect()
 }
 
@@ -252,7 +259,7 @@ fn glance(document: &TraceDocument, all: &[ReplayedOvershoot]) -> Table {
     let rows = [("fitted", &error.identification, false), ("not fitted", &error.validation, true)];
     for (used, errors, held_out) in rows.into_iter().filter(|(_, errors, _)| !errors.is_empty()) {
         let headings = figures::heading_rms_deg(errors.iter());
-        let overshoots = overshoots::errors_before_after(all, held_out).map(|error| error.median_deg);
+        let overshoots = overshoots::overshoot_errors_before_after(all, held_out).map(|error| error.median_deg);
         let numbers = headings.map(Some).into_iter().chain(overshoots);
         let numbers = numbers.map(|number| number.map_or_else(|| MISSING.to_owned(), |number| significant(number, 2)));
         table.push(std::iter::once(format!("{} {used}", errors.len())).chain(numbers));
@@ -278,7 +285,7 @@ fn limits(document: &TraceDocument, curves: &TraceCurves) -> Vec<String> {
 /// Sentences on every localised moment that is not on the list of effects, with `mark` around a formula.
 fn located(document: &TraceDocument, mark: &str) -> impl Iterator<Item = String> {
     document.trace.located.iter().map(move |moment| {
-        let only = moment.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record(name)));
+        let only = moment.only.as_ref().map_or_else(String::new, |name| format!(" in {}", names::record_name(name)));
         let or = if moment.alternatives.is_empty() { "" } else { "; equally close: " };
         let typed = match &moment.formula {
             Some(line) => format!("To fit and test it: {mark}--effect \"{line}\"{mark}."),
@@ -312,13 +319,15 @@ fn aliases(document: &TraceDocument) -> Table {
     let mut table = Table::new(TableHead::default().texts(["effect", "indistinguishable in these records from"]));
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([
-            tables::term(&effect.id, &effect.form, effect.only.as_ref()),
-            tables::terms(&effect.alias_forms, ", "),
+            tables::effect_text(&effect.id, &effect.form, effect.only.as_ref()),
+            tables::joined_effect_texts(&effect.alias_forms, ", "),
         ]);
     }
-    for candidate in document.trace.candidates.iter().filter(|candidate| candidate.outcome == Outcome::NotObservable) {
+    for candidate in
+        document.trace.candidates.iter().filter(|candidate| candidate.outcome == CandidateOutcome::NotObservable)
+    {
         let why = candidate.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
-        table.push([names::effect(&candidate.id), format!("no effect at all (not observable{why})")]);
+        table.push([names::effect_name(&candidate.id), format!("no effect at all (not observable{why})")]);
     }
     table
 }

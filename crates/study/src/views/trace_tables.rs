@@ -3,11 +3,11 @@
 use ::trace::replay_errors::HORIZONS_S;
 use document::identified_hull::IdentifiedCoefficient;
 use document::trace::{
-    Document, HeadingErrorKind, ModelReplayErrors, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry,
+    AnalysisDocument, HeadingErrorKind, ModelReplayErrors, ParameterEntry, RecordErrors, RecordNoiseEntry, TermEntry,
     TraceDocument,
 };
 use document::{MomentKind, names};
-use report::number::{self, MISSING, fixed, optional, significant, uncertain};
+use report::number::{self, MISSING, fixed, optional, significant, with_uncertainty_and_power};
 use report::{Table, TableHead};
 use ship::angle::to_deg;
 use ship::vessel::prime::departure_cause;
@@ -27,10 +27,10 @@ fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String
 }
 
 /// Parameter as text: its symbol, value and unit.
-pub fn value(parameter: &ParameterEntry) -> String {
+pub fn parameter_text(parameter: &ParameterEntry) -> String {
     let (quantity, unit) = in_degrees(&parameter.symbol, parameter.quantity, &parameter.unit);
     let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-    format!("{} = {}{unit}", parameter.symbol, uncertain(quantity.value, quantity.sd))
+    format!("{} = {}{unit}", parameter.symbol, with_uncertainty_and_power(quantity.value, quantity.sd))
 }
 
 /// Dimensionless form of a symbol: "n₃′/T′" for "n₃/T".
@@ -40,46 +40,47 @@ fn primed(symbol: &str) -> String {
 }
 
 /// Text of an effect: its name, its form, and the record if it acts in only one.
-pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
-    let only = only.map_or_else(String::new, |only| format!(", in {}", names::record(only)));
-    names::effect_form(id, form) + &only
+pub fn effect_text(id: &str, form: &str, only: Option<&String>) -> String {
+    let only = only.map_or_else(String::new, |only| format!(", in {}", names::record_name(only)));
+    names::effect_form_name(id, form) + &only
 }
 
 /// Several effects, joined by `between`.
-pub fn terms(all: &[TermEntry], between: &str) -> String {
-    all.iter().map(|entry| term(&entry.id, &entry.form, entry.only.as_ref())).collect::<Vec<_>>().join(between)
+pub fn joined_effect_texts(all: &[TermEntry], between: &str) -> String {
+    all.iter().map(|entry| effect_text(&entry.id, &entry.form, entry.only.as_ref())).collect::<Vec<_>>().join(between)
 }
 
 /// Remark behind the name of an effect that the model has without naming it; empty for a named one.
 pub fn unnamed_remark(document: &TraceDocument, id: &str) -> String {
-    let Document { effects, candidates, .. } = &document.trace;
+    let AnalysisDocument { effects, candidates, .. } = &document.trace;
     let is_named = effects.iter().any(|effect| effect.id == id || effect.aliases.iter().any(|alias| alias == id));
     let candidate = candidates.iter().find(|candidate| candidate.id == id).filter(|_| !is_named);
     candidate.map_or_else(String::new, |candidate| format!(", not named, p = {}", fixed(candidate.probability, 2)))
 }
 
 /// Table of named effects with their parameters.
-pub fn effects(document: &TraceDocument) -> Table {
+pub fn effect_table(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["effect"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["parameters", "indistinguishable from"]));
     for effect in &document.trace.effects {
         let asked = if effect.required { ", asked for" } else { "" };
-        let parameters: Vec<String> = effect.parameters.values().map(value).collect();
+        let parameters: Vec<String> = effect.parameters.values().map(parameter_text).collect();
         table.push([
-            format!("{}{asked}", term(&effect.id, &effect.form, effect.only.as_ref())),
+            format!("{}{asked}", effect_text(&effect.id, &effect.form, effect.only.as_ref())),
             fixed(effect.probability, 3),
             fixed(effect.delta_bic, 1),
             parameters.join(", "),
-            if effect.alias_forms.is_empty() { MISSING.into() } else { terms(&effect.alias_forms, ", ") },
+            if effect.alias_forms.is_empty() { MISSING.into() } else { joined_effect_texts(&effect.alias_forms, ", ") },
         ]);
     }
     table
 }
 
 /// Table of errors before and after on some records.
-pub fn errors(records: &[RecordErrors]) -> Table {
+pub fn replay_error_table(records: &[RecordErrors]) -> Table {
     let mut judged = records.iter().flat_map(|record| [&record.errors.before, &record.errors.after]);
-    let with_moments = judged.any(|error| error.with_own_bias_deg.or(error.with_own_moment_deg).is_some());
+    let with_moments =
+        judged.any(|error| error.heading_rmse_own_bias_deg.or(error.heading_rmse_own_moment_deg).is_some());
     let moments = ["own bias", "own moment"].into_iter().filter(|_| with_moments);
     let head = TableHead::default().texts(["record", "use", "model"]).numbers(["heading"]).unit("deg");
     let head = head.numbers(moments).unit("deg").numbers(HORIZONS_S.map(|window_s| format!("every {window_s:.0} s")));
@@ -91,11 +92,12 @@ pub fn errors(records: &[RecordErrors]) -> Table {
         let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
         let models = [("before", &errors.before, None), ("after", &errors.after, Some(ratio))];
         for (model, error, ratio) in models {
-            let head = if model == "before" { [names::record(name), (*used).to_owned()] } else { Default::default() };
+            let head =
+                if model == "before" { [names::record_name(name), (*used).to_owned()] } else { Default::default() };
             let mut cells = head.to_vec();
             cells.push(model.to_owned());
             cells.push(three(Some(error.heading_rmse_deg)));
-            let moments = [error.with_own_bias_deg, error.with_own_moment_deg].map(three);
+            let moments = [error.heading_rmse_own_bias_deg, error.heading_rmse_own_moment_deg].map(three);
             cells.extend(with_moments.then_some(moments).into_iter().flatten());
             cells.extend(HORIZONS_S.map(|window_s| three(restarted_heading_error(error, window_s))));
             cells.extend([error.yaw_rate_rmse_deg_s, error.overshoot_error_deg].map(three));
@@ -125,7 +127,7 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 const MIN_DEPARTURE: f64 = 1.0;
 
 /// Hull coefficients at least one standard deviation off their expected values, for each hull the farthest first.
-pub fn hulls(document: &TraceDocument) -> Table {
+pub fn departed_coefficient_table(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["hull", "coefficient"]).numbers(["value", "expected"]);
     let mut table = Table::new(head.numbers(["departure"]).unit("sd").texts(["what it can mean"]));
     for hull in &document.ship.hulls {
@@ -150,7 +152,7 @@ pub fn hulls(document: &TraceDocument) -> Table {
 }
 
 /// Table of K, T, δ_r and every parameter of the most probable structure.
-pub fn parameters(document: &TraceDocument) -> Table {
+pub fn parameter_table(document: &TraceDocument) -> Table {
     let model = &document.trace.model;
     let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
     let is_prime = model.indices.prime.is_some();
@@ -158,8 +160,10 @@ pub fn parameters(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["parameter", "value", "95 % interval", "unit"]).texts(prime);
     let mut table = Table::new(head.texts(["record"]).texts(remarks.then_some("remark")));
     let mut push = |symbol: &str, (number, unit): (Quantity, String), prime: Option<Quantity>, tail: [&str; 2]| {
-        let mut cells = vec![symbol.to_owned(), uncertain(number.value, number.sd), interval(number.ci95), unit];
-        let prime = prime.map(|prime| [primed(symbol), uncertain(prime.value, prime.sd), interval(prime.ci95)]);
+        let mut cells =
+            vec![symbol.to_owned(), with_uncertainty_and_power(number.value, number.sd), interval(number.ci95), unit];
+        let prime = prime
+            .map(|prime| [primed(symbol), with_uncertainty_and_power(prime.value, prime.sd), interval(prime.ci95)]);
         let prime = prime.unwrap_or_else(|| [MISSING, MISSING, MISSING].map(String::from));
         cells.extend(is_prime.then_some(prime).into_iter().flatten());
         cells.extend(tail.into_iter().take(1 + usize::from(remarks)).map(String::from));
@@ -179,7 +183,7 @@ pub fn parameters(document: &TraceDocument) -> Table {
 }
 
 /// Table with outcome, probability and ΔBIC of every candidate effect.
-pub fn candidates(document: &TraceDocument) -> Table {
+pub fn candidate_table(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["candidate", "form", "outcome"]).numbers(["probability", "ΔBIC"]);
     let mut table = Table::new(head.texts(["p"]).numbers(["visibility"]));
     let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
@@ -189,12 +193,12 @@ pub fn candidates(document: &TraceDocument) -> Table {
             let outcome = format!("{}{why}", entry.outcome.as_str());
             let numbers =
                 [fixed(entry.probability, 3), optional(entry.delta_bic, 1), two(entry.p_value), MISSING.into()];
-            table.push([names::effect(&entry.id), MISSING.into(), outcome].into_iter().chain(numbers));
+            table.push([names::effect_name(&entry.id), MISSING.into(), outcome].into_iter().chain(numbers));
         }
         for (number, form) in entry.forms.iter().enumerate() {
-            let only = form.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record(only)));
+            let only = form.only.as_ref().map_or_else(String::new, |only| format!(", in {}", names::record_name(only)));
             table.push([
-                if number == 0 { names::effect(&entry.id) } else { String::new() },
+                if number == 0 { names::effect_name(&entry.id) } else { String::new() },
                 format!("{}{only}", form.form),
                 form.outcome.as_str().to_owned(),
                 fixed(form.probability, 3),
@@ -211,18 +215,19 @@ pub fn candidates(document: &TraceDocument) -> Table {
 const MIN_PROBABILITY: f64 = 1e-3;
 
 /// Table of the structures with their probabilities.
-pub fn structures(document: &TraceDocument) -> Table {
+pub fn structure_table(document: &TraceDocument) -> Table {
     let mut table =
         Table::new(TableHead::default().texts(["structure"]).numbers(["probability"]).texts(["in the average"]));
     for entry in document.trace.structures.iter().filter(|entry| entry.member || entry.weight > MIN_PROBABILITY) {
-        let name = if entry.effects.is_empty() { "the base alone".into() } else { terms(&entry.effects, " + ") };
+        let name =
+            if entry.effects.is_empty() { "the base alone".into() } else { joined_effect_texts(&entry.effects, " + ") };
         table.push([name, fixed(entry.weight, 3), if entry.member { "yes" } else { "no" }.into()]);
     }
     table
 }
 
 /// Table of the noise of every fitted record.
-pub fn noise(document: &TraceDocument) -> Table {
+pub fn noise_table(document: &TraceDocument) -> Table {
     let head = TableHead::default().texts(["record"]).numbers(["heading, white"]).unit("deg").texts(["beside it"]);
     let mut table = Table::new(head.texts(["headings left out at"]).unit("s"));
     for noise in &document.trace.noise {
@@ -231,7 +236,7 @@ pub fn noise(document: &TraceDocument) -> Table {
         let beside = coloured_noise_phrases(noise);
         let times: Vec<String> = noise.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
         table.push([
-            names::record(name),
+            names::record_name(name),
             significant(noise.heading_sd_deg, 2),
             if beside.is_empty() { MISSING.into() } else { beside.join(", ") },
             if times.is_empty() { MISSING.into() } else { times.join(", ") },

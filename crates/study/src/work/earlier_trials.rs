@@ -70,7 +70,7 @@ impl EarlierModel {
 }
 
 /// Hulls of all models.
-pub fn hulls(models: &[EarlierModel]) -> Vec<EarlierHull> {
+pub fn hulls_of_models(models: &[EarlierModel]) -> Vec<EarlierHull> {
     models.iter().flat_map(|model| model.hulls.iter().cloned()).collect()
 }
 
@@ -90,9 +90,9 @@ fn counted_once<'a>(models: &'a [EarlierModel], mut seen: BTreeMap<&'a str, &'a 
 /// Checks that models can be priors of records; returns a warning for each whose ship sails at another Froude number.
 ///
 /// Fails if a record counts twice, or if models are given and no hull can be fitted to the records.
-pub fn check(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
+pub fn check_usable_as_priors(models: &[EarlierModel], trials: &[Trial]) -> Result<Vec<Warning>, Failure> {
     counted_once(models, trials.iter().map(file_and_hash).map(|(file, sha256)| (sha256, file)).collect())?;
-    if let Some(error) = hull::refusal(trials).filter(|_| !models.is_empty()) {
+    if let Some(error) = hull::fit_refusal(trials).filter(|_| !models.is_empty()) {
         let problem = "--prior cannot be used";
         let cure = "give length and approach speed (--length-m, --speed-m-s, or [ship] in a sidecar) and a record from its \
                     steady approach on, or leave --prior out";
@@ -133,7 +133,7 @@ pub struct UpdatedShip {
     /// The identified ship.
     pub ship: IdentifiedShip,
     /// Entry of the models used as priors.
-    pub earlier: EarlierTrials,
+    pub earlier_trials: EarlierTrials,
     /// Warnings of a conflict, or of another Froude number.
     pub warnings: Vec<Warning>,
 }
@@ -146,10 +146,10 @@ pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<UpdatedS
     let LaterShip { file: shown, ship, records } = later;
     counted_once(models, records.keys().map(|sha256| (sha256.as_str(), shown)).collect())?;
     let before_trials = earlier_hulls(ship).map_err(|error| Failure::in_file(shown, error))?;
-    let (mut ship, earlier, mut checks) = (ship.clone(), hulls(models), Vec::new());
+    let (mut ship, earlier, mut checks) = (ship.clone(), hulls_of_models(models), Vec::new());
     for (stored, hull_before) in ship.hulls.iter_mut().zip(&before_trials) {
         let Some((after, check)) = hull::merge_with_earlier(hull_before, &earlier) else { continue };
-        let values = stored.coefficients.iter_mut().zip(after.values.iter());
+        let values = stored.coefficients.iter_mut().zip(after.coefficients.iter());
         values.for_each(|(coefficient, value)| coefficient.value = *value);
         stored.covariance = matrix_rows(&after.covariance);
         drawable_hull::check(stored).map_err(|error| Failure::in_file(shown, error))?;
@@ -163,8 +163,8 @@ pub fn update_ship(models: &[EarlierModel], later: LaterShip) -> Result<UpdatedS
     checks.sort_by(|a, b| b.1.p_value.total_cmp(&a.1.p_value));
     let earlier = earlier_trials(models, &before_trials[0].particulars, &checks, |_| true);
     let mut warnings = other_speeds(models, &before_trials[0].particulars);
-    warnings.extend(prior::warning(&earlier));
-    Ok(UpdatedShip { ship, earlier, warnings })
+    warnings.extend(prior::contradiction_warning(&earlier));
+    Ok(UpdatedShip { ship, earlier_trials: earlier, warnings })
 }
 
 /// Document entry of the models used for a ship, and of their checks, which begin with the closest hull; `takes_part`
@@ -191,8 +191,8 @@ fn earlier_trials(
 }
 
 /// Document entry of the models used with the records; `None` without models.
-pub fn entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
+pub fn earlier_trials_entry(models: &[EarlierModel], trials: &[Trial], facts: &RecordFacts) -> Option<EarlierTrials> {
     let ship = trials.iter().find_map(Trial::hull).filter(|_| !models.is_empty())?;
     let is_member = |form: &str| facts.hulls.iter().any(|hull| hull.form == form);
-    Some(earlier_trials(models, &ship, &facts.checks, is_member))
+    Some(earlier_trials(models, &ship, &facts.prior_checks, is_member))
 }

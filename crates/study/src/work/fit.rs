@@ -3,7 +3,7 @@
 use campaign::failure::Failure;
 use campaign::stored_figures::Replays;
 use document::fit::{CircleEntry, CriterionEntry, FitDocument, SCHEMA, TrialEntry, VerdictEntry, ZigZagEntry};
-use document::method::{MethodEntry, Validation};
+use document::method::{MethodEntry, ValidationEntry};
 use document::trace::PrimeIndices;
 use document::{ErrorCode, ImoFormEntry, Warning, WarningCode, WarningSource, Warnings};
 use identify::estimate::Uncertainty;
@@ -98,7 +98,7 @@ impl FitResult {
                 replays: replay_curves(trial, &self.answers, |method| CurveOrigin::Method(method.to_owned())),
             },
             rudder: angle_curve_deg(trial.time(), trial.rudder()),
-            circle: (!validation).then(|| MeasuredCircle::from_trial(trial)?.track).flatten().map(from_above),
+            circle_track: (!validation).then(|| MeasuredCircle::from_trial(trial)?.track).flatten().map(from_above),
             rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
             name,
         }
@@ -119,7 +119,7 @@ pub fn fit(
 ) -> Result<FitResult, Failure> {
     let together = scales::to_common_scale(records, validation)?;
     let (trials, held_out) = (&together.trials[..], &together.held_out[..]);
-    warnings.extend(earlier_trials::check(priors, trials)?);
+    warnings.extend(earlier_trials::check_usable_as_priors(priors, trials)?);
     let ship = scales::declared_particulars(trials);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
@@ -139,10 +139,10 @@ pub fn fit(
     let surest = answers.iter().filter_map(|(_, estimate)| estimate.as_ref()).find(|fit| fit.K().sd.is_some());
     warnings.extend(surest.and_then(|estimate| unusual_ship(estimate, ship, records)));
     let records: Vec<TrialEntry> = records.iter().map(|trial| trial_entry(trial, &mut warnings)).collect();
-    let shown = RecordFacts::from_trials(trials).with_motion(None, &earlier_trials::hulls(priors));
+    let shown = RecordFacts::from_trials(trials).with_motion(None, &earlier_trials::hulls_of_models(priors));
     warnings.extend(missing_track_warning(&shown).into_iter().chain(no_loading(trials, &shown)));
-    let earlier_trials = earlier_trials::entry(priors, trials, &shown);
-    warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
+    let earlier_trials = earlier_trials::earlier_trials_entry(priors, trials, &shown);
+    warnings.extend(earlier_trials.as_ref().and_then(prior::contradiction_warning));
     warnings.extend(answers.iter().flat_map(method_warnings));
     let ship_of = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
         Some((entry.method.clone(), identified_ship::from_estimate(estimate.as_ref()?, &shown)?))
@@ -191,7 +191,7 @@ fn circle_entry(circle: &MeasuredCircle, ship: Option<Particulars>) -> CircleEnt
     let lengths = |name: &str| Some(circle.figures.get(name).copied().flatten()? / ship?.length);
     CircleEntry {
         side: Side::from_angle(circle.turn.side).to_string(),
-        rudder_deg: to_deg(circle.turn.rudder),
+        rudder_deg: to_deg(circle.turn.max_rudder),
         advance_lengths: lengths("advance_m"),
         transfer_lengths: lengths("transfer_m"),
         tactical_diameter_lengths: lengths("tactical_diameter_m"),
@@ -203,14 +203,14 @@ fn form_of(records: &[Trial], ship: Option<Particulars>) -> Option<ImoForm> {
     let records: Vec<(Trial, Option<Current>)> =
         records.iter().map(|trial| turn::without_current(trial.clone(), None)).collect();
     let held = records.iter().map(|(trial, current)| FormRecord { trial, correction: None, current: *current });
-    let form = form::fill(&[], ship, "", &held.collect::<Vec<_>>(), None);
+    let form = form::fill_form(&[], ship, "", &held.collect::<Vec<_>>(), None);
     let is_measured = |entry: &ImoFormEntry| entry.side.is_some() && entry.value.is_some();
     form.entries.iter().any(is_measured).then_some(form)
 }
 
 /// Document entry of a zig-zag; with criteria if length and speed are declared.
 fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
-    let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
+    let criteria = trial.particulars().map(|particulars| imo::imo_criteria(zigzag, particulars)).unwrap_or_default();
     let criterion = |criterion: &imo::ImoCriterion| CriterionEntry {
         criterion: criterion.name.into(),
         measured: criterion.measured.map(|measured| measured.value),
@@ -312,7 +312,10 @@ fn unusable(record: &Trial, entries: &[MethodEntry], warnings: &[Warning]) -> Fa
     Failure::in_file(file_and_hash(record).0, message).with_code(ErrorCode::NoAnswer)
 }
 
-fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
+fn validate(other: &Trial, estimate: Option<&Estimate>) -> ValidationEntry {
     let replay = estimate.and_then(|estimate| replay(other, &estimate.response));
-    Validation { file: file_and_hash(other).0.to_owned(), heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())) }
+    ValidationEntry {
+        file: file_and_hash(other).0.to_owned(),
+        heading_rmse_deg: replay.map(|replay| to_deg(replay.rms())),
+    }
 }

@@ -182,7 +182,7 @@ pub fn with_convertible_hull(shown: &str, ship: &IdentifiedShip) -> Result<Ident
 /// Particulars with typical values for missing ones, and the block coefficient from the displacement.
 fn completed(given: &HullParticulars) -> Result<HullParticulars, ParticularsError> {
     let mut all = *given;
-    for assumed in hull_prior(given)?.assumed {
+    for assumed in hull_prior(given)?.assumed_particulars {
         if let Some(particular) = Particular::find(assumed.key) {
             particular.set(&mut all, assumed.value);
         }

@@ -49,7 +49,7 @@ fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Optio
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let mut simulation = Simulation::new(SimulatedShip::from_response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
-    simulation.recording.period = records[0].sampling_period();
+    simulation.recording.sampling_period = records[0].sampling_period();
     simulation.longest_wait = MAX_DURATIONS * longest;
     let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
     let is_manoeuvre = trial.duration() <= MAX_DURATIONS * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);

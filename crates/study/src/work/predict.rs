@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use campaign::failure::Failure;
-use campaign::scenario::TRACE;
+use campaign::scenario::TRACE_ID;
 use document::earlier_trials::Likeness;
 use document::{IdentifiedShip, Warning, WarningCode, WarningSource, Warnings};
 use identify::plausibility::unusual_froude_number;
@@ -21,7 +21,7 @@ use trial::{Manoeuvre, Trial, file};
 use super::earlier_trials::{EarlierModel, LaterShip, update_ship};
 use super::loading::{LoadingCondition, with_convertible_hull};
 use super::stored_ships::{StoredShips, model_text, read_stored_ships};
-use super::target_scale::{self, SidecarConditions, TargetScale, at_scale, is_same_scale, scale_mismatch};
+use super::target_scale::{self, SidecarConditions, TargetScale, is_same_scale, scale_mismatch, ship_at_scale};
 use crate::documents::prior;
 use crate::options::PredictRequest;
 use crate::progress::ProgressSteps;
@@ -51,7 +51,7 @@ fn files(models: &[StoredModel]) -> Vec<String> {
 fn mixture_of(models: &[StoredModel], scale: Option<TargetScale>) -> Result<ShipMixture, Failure> {
     let mut ships: Vec<(IdentifiedShip, f64)> = Vec::with_capacity(models.len());
     for model in models {
-        let ship = at_scale(&model.ship, scale).map_err(|error| Failure::in_file(&model.file, error))?;
+        let ship = ship_at_scale(&model.ship, scale).map_err(|error| Failure::in_file(&model.file, error))?;
         let [first, next] = [ships.first().map_or(&ship, |(first, _)| first), &ship].map(IdentifiedShip::particulars);
         if !first.zip(next).map_or(first == next, |(first, next)| is_same_scale(first, next)) {
             return Err(scale_mismatch([(&models[0].file, first), (&model.file, next)]));
@@ -84,7 +84,7 @@ impl StoredModel {
     ) -> Result<Self, Failure> {
         let StoredShips { mut ships, verdict, rejection_reason, records } = read_stored_ships(shown, text)?;
         // A trace has only one estimate.
-        let asked = asked.filter(|_| !ships.contains_key(TRACE));
+        let asked = asked.filter(|_| !ships.contains_key(TRACE_ID));
         let method = method(shown, &ships, asked.or(verdict.as_deref()))?;
         let used = match (asked, ships[&method].hulls.is_empty()) {
             (None, true) if ships.len() > 1 => {
@@ -119,7 +119,7 @@ impl StoredModel {
         warnings.extend(after.warnings);
         let mut records = self.records.clone();
         records.extend(earlier.iter().flat_map(|model| model.records.clone()));
-        let sentence = format!("{}: {}", self.file, prior::sentence(&after.earlier));
+        let sentence = format!("{}: {}", self.file, prior::earlier_trials_sentence(&after.earlier_trials));
         Ok((Self { ship: after.ship, records, ..self.clone() }, sentence))
     }
 
@@ -137,15 +137,15 @@ pub struct PredictInput<'a> {
     /// Models of the ship; several models have equal weights.
     pub models: &'a [StoredModel],
     /// Models of earlier trials, whose records are not in `models`.
-    pub earlier: &'a [EarlierModel],
+    pub earlier_models: &'a [EarlierModel],
     /// Models of the same ship in the loading of the records; empty if no correction is needed.
-    pub ballast: &'a [StoredModel],
+    pub ballast_models: &'a [StoredModel],
     /// Records that are compared with their prediction.
     pub records: Vec<Trial>,
     /// Current removed from the tracks of the turns of the records; `None` for the current estimated from each track.
     pub current: Option<Current>,
     /// Conditions declared by a sidecar; `None` without one, or if there are records.
-    pub declared: SidecarConditions<'a>,
+    pub declared_conditions: SidecarConditions<'a>,
 }
 
 /// Requested manoeuvres, or those of the IMO criteria if neither a manoeuvre, a replay nor the form is requested; those
@@ -155,7 +155,7 @@ fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
         ([], true) => standard::imo_manoeuvres(),
         (asked, _) => asked.to_vec(),
     };
-    let mut of_form = form::manoeuvres();
+    let mut of_form = form::form_manoeuvres();
     of_form.retain(|kind| request.form && !kinds.contains(kind));
     kinds.extend(of_form);
     kinds
@@ -218,13 +218,14 @@ pub fn predict(
     quiet: bool,
     warnings: &mut Warnings,
 ) -> Result<PredictDocument, Failure> {
-    let PredictInput { models, earlier, ballast, records, current, declared } = input;
-    let (updated, sentences) = after_earlier(models, earlier, warnings)?;
-    let models = if earlier.is_empty() { models } else { &updated };
+    let PredictInput { models, earlier_models, ballast_models: ballast, records, current, declared_conditions } = input;
+    let (updated, sentences) = after_earlier(models, earlier_models, warnings)?;
+    let models = if earlier_models.is_empty() { models } else { &updated };
     let taken = request.load.as_ref().map(|load| at_loading(load, models, ballast, warnings)).transpose()?;
     let (models, ballast) = taken.as_ref().map_or((models, ballast), |(full, ballast, _)| (full, ballast));
     warnings.extend(records.iter().filter(|_| ballast.is_empty()).filter_map(|trial| validates_nothing(models, trial)));
-    let (draws, scale) = (request.draws as usize, TargetScale::from_request(&request.scale, &records, declared)?);
+    let (draws, scale) =
+        (request.draws as usize, TargetScale::from_request(&request.scale, &records, declared_conditions)?);
     let mut in_still_water = |record| turn::without_current(target_scale::at_declared_scale(record, warnings), current);
     let records: Vec<(Trial, Option<Current>)> = records.into_iter().map(&mut in_still_water).collect();
     let mixture = mixture_of(models, scale)?;
@@ -252,7 +253,7 @@ pub fn predict(
         calm: request.calm,
         length_m: particulars.map(|ship| ship.length),
         speed_m_s: particulars.map(|ship| ship.speed),
-        imo: particulars.map(|ship| imo::criteria(&predictions, ship)).unwrap_or_default(),
+        imo: particulars.map(|ship| imo::predicted_criteria(&predictions, ship)).unwrap_or_default(),
         manoeuvres: predictions,
         replays,
         corrected: corrections.iter().flatten().cloned().collect(),
@@ -264,7 +265,7 @@ pub fn predict(
         ..PredictDocument::default()
     };
     if request.form {
-        fill_form(&mut document, particulars, &records, &corrections, declared);
+        fill_form(&mut document, particulars, &records, &corrections, declared_conditions);
     }
     Ok(document)
 }
@@ -301,7 +302,7 @@ fn fill_form(
         current: *current,
     });
     let held: Vec<FormRecord> = held.collect();
-    let filled = form::fill(&document.manoeuvres, particulars, &document.model_files(), &held, declared);
+    let filled = form::fill_form(&document.manoeuvres, particulars, &document.model_files(), &held, declared);
     (document.form, document.form_remarks) = (Some(filled.entries), Some(filled.remarks));
 }
 
@@ -347,7 +348,7 @@ impl ReplayedModels<'_> {
         warnings: &mut Warnings,
     ) -> Result<(RecordReplay, Option<Correction>), Failure> {
         let Self { full, ballast, loading, scale, draws } = *self;
-        let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::from_record(scale, record));
+        let scaled = |models: &[StoredModel]| mixture_of(models, TargetScale::for_replay_of(scale, record));
         let file = file_and_hash(record).0;
         let replayed_with = scaled(if ballast.is_empty() { full } else { ballast })?;
         let replayed = replayed_with.replay(record, draws, current).map_err(|error| Failure::in_file(file, error))?;
@@ -358,15 +359,16 @@ impl ReplayedModels<'_> {
         if ballast.is_empty() {
             return Ok((replayed, None));
         }
-        let mut correction = match correction::correct(&scaled(full)?, &replayed_with, record, loading, draws) {
-            Ok(correction) => correction,
-            Err(error @ PredictError::TooFewCompleted { .. }) => {
-                let text = format!("{error}; it is not corrected to {loading}");
-                warnings.push(WarningCode::Correction, warning_source_of(record), text);
-                return Ok((replayed, None));
-            }
-            Err(error) => return Err(Failure::in_file(file, error)),
-        };
+        let mut correction =
+            match correction::correct_to_loading(&scaled(full)?, &replayed_with, record, loading, draws) {
+                Ok(correction) => correction,
+                Err(error @ PredictError::TooFewCompleted { .. }) => {
+                    let text = format!("{error}; it is not corrected to {loading}");
+                    warnings.push(WarningCode::Correction, warning_source_of(record), text);
+                    return Ok((replayed, None));
+                }
+                Err(error) => return Err(Failure::in_file(file, error)),
+            };
         if correction.figures.is_empty() {
             let text = format!(
                 "it has no zig-zag or turn that begins with the first execute, so it is not corrected to {loading}"
@@ -379,7 +381,7 @@ impl ReplayedModels<'_> {
             of_models.push(correction::difference_warning("methods", &full[0].method, &ballast[0].method, loading));
         }
         correction.warnings.splice(0..0, of_models);
-        [correction.full, correction.ballast] = [full, ballast].map(files);
+        [correction.target_models, correction.trial_models] = [full, ballast].map(files);
         Ok((replayed, Some(correction)))
     }
 }

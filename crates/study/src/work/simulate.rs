@@ -8,7 +8,7 @@ use campaign::scenario::problem::suggestion;
 use campaign::shard::TrialId;
 use simulate::SimulatedTrial;
 
-use crate::documents::truth::truth;
+use crate::documents::truth::truth_document;
 use crate::options::{Replicates, SimulateRequest};
 
 /// Maximum number of trials of one call; more are a study, which stores its trials as rows.
@@ -63,12 +63,12 @@ pub struct RecordFiles {
     /// Name of the record.
     pub name: String,
     /// The record, as CSV.
-    pub table: Vec<u8>,
-    /// Its sidecar, with the declared calm, length and speed of the ship and noise of the instruments, which the table
+    pub record_csv: Vec<u8>,
+    /// Its sidecar, with the declared calm, length and speed of the ship and noise of the instruments, which the CSV
     /// does not hold; `None` without any of these.
-    pub sidecar: Option<String>,
+    pub sidecar_toml: Option<String>,
     /// Its true values, as JSON.
-    pub truth: String,
+    pub truth_json: String,
 }
 
 /// Records of one trial; the first has the name `name`, further ones of the same ship are numbered.
@@ -84,12 +84,12 @@ pub fn simulate_record_files(scenario: &Scenario, task: TrialId, name: &str) -> 
     let simulated = engine::simulate(scenario, task).map_err(refuse)?;
     let truths = engine::true_responses(scenario, task).map_err(refuse)?;
     let files = |(number, simulated): (usize, &SimulatedTrial)| {
-        let mut table = Vec::new();
-        trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
-        let truth = truth(scenario, task, simulated, truths)?;
-        let truth = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
-        let sidecar = trial::writer::sidecar_toml(&simulated.trial);
-        Ok(RecordFiles { name: numbered_record_name(name, number), table, sidecar, truth })
+        let mut record_csv = Vec::new();
+        trial::write_csv(&simulated.trial, &mut record_csv).map_err(|error| error.to_string())?;
+        let truth = truth_document(scenario, task, simulated, truths)?;
+        let truth_json = serde_json::to_string(&truth).map_err(|error| error.to_string())? + "\n";
+        let sidecar_toml = trial::writer::sidecar_toml(&simulated.trial);
+        Ok(RecordFiles { name: numbered_record_name(name, number), record_csv, sidecar_toml, truth_json })
     };
     simulated.iter().enumerate().map(files).collect::<Result<_, String>>().map_err(refuse)
 }

@@ -1,6 +1,6 @@
 //! Every record identified alone, to show whether K and T of a first-order response depend on the amplitude.
 
-use document::single_records::{Amplitude, SingleRecord, SingleRecords};
+use document::single_records::{SingleRecord, SingleRecords, ZigZagAmplitude};
 use identify::Identifier;
 use rayon::prelude::*;
 use ship::angle::to_deg;
@@ -15,19 +15,19 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Mean rudder angle of the executes, and mean peak of the heading about the base course; `None` without a zig-zag.
-fn amplitude(trial: &Trial) -> Option<Amplitude> {
+fn amplitude(trial: &Trial) -> Option<ZigZagAmplitude> {
     let zigzag = ZigZag::from_trial(trial).ok()?;
     let base = zigzag.base_course.heading.value;
     let peaks = zigzag.overshoots.iter().map(|overshoot| (overshoot.peak_heading.value - base).abs());
     let rudders = zigzag.executes.iter().map(|execute| execute.rudder_after.abs());
-    Some(Amplitude { rudder_deg: to_deg(mean(rudders)?), heading_deg: to_deg(mean(peaks)?) })
+    Some(ZigZagAmplitude { rudder_deg: to_deg(mean(rudders)?), heading_deg: to_deg(mean(peaks)?) })
 }
 
 /// Zig-zag among the records: the record, its name and its amplitude.
 struct RecordedZigZag<'a> {
     trial: &'a Trial,
     name: String,
-    amplitude: Amplitude,
+    amplitude: ZigZagAmplitude,
 }
 
 impl RecordedZigZag<'_> {
@@ -54,8 +54,8 @@ impl<'a> RecordedZigZags<'a> {
     }
 
     /// Mean amplitude; `None` without a zig-zag.
-    pub fn mean_amplitude(&self) -> Option<Amplitude> {
-        Some(Amplitude {
+    pub fn mean_amplitude(&self) -> Option<ZigZagAmplitude> {
+        Some(ZigZagAmplitude {
             rudder_deg: mean(self.0.iter().map(|zigzag| zigzag.amplitude.rudder_deg))?,
             heading_deg: mean(self.0.iter().map(|zigzag| zigzag.amplitude.heading_deg))?,
         })
@@ -72,7 +72,7 @@ impl<'a> RecordedZigZags<'a> {
             let complete = records.len() == zigzags.len();
             if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
                 let agree = agree(&records);
-                best = Some(SingleRecords { method: method.id().to_owned(), records, agree });
+                best = Some(SingleRecords { method: method.id().to_owned(), records, is_consistent: agree });
             }
             if complete {
                 break;
@@ -111,7 +111,7 @@ mod tests {
     fn records_agree_as_far_as_chance_goes() {
         let record = |k: f64, t: f64, sd: Option<f64>| SingleRecord {
             record: String::new(),
-            amplitude: Amplitude { rudder_deg: 10.0, heading_deg: 14.0 },
+            amplitude: ZigZagAmplitude { rudder_deg: 10.0, heading_deg: 14.0 },
             k_per_s: Quantity { sd, ..Quantity::without_uncertainty(k) },
             t_s: Quantity { sd, ..Quantity::without_uncertainty(t) },
         };

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use campaign::failure::Failure;
-use campaign::scenario::{TRACE, name};
+use campaign::scenario::{TRACE_ID, name};
 use document::IdentifiedShip;
 use document::fit::SCHEMA as FIT_SCHEMA;
 use document::trace::SCHEMA as TRACE_SCHEMA;
@@ -19,7 +19,7 @@ const EXPECTED: &str = "expected the fit.json or trace.json of this program";
 
 /// Identified ships in a stored fit or trace.
 pub struct StoredShips {
-    /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE`].
+    /// Ships of every method of a fit with a covariance; for a trace its only ship, under [`TRACE_ID`].
     pub ships: BTreeMap<String, IdentifiedShip>,
     /// Method that the verdict of a fit recommends; `None` for a trace, and if the method has no covariance.
     pub verdict: Option<String>,
@@ -45,11 +45,11 @@ pub fn read_stored_ships(shown: &str, text: &str) -> Result<StoredShips, Failure
         serde_json::from_str(text).map_err(|error| refuse(format!("this is no JSON ({error}); {EXPECTED}")))?;
     let (command, key, records) = match value["schema"].as_str() {
         Some(FIT_SCHEMA) => ("fit", "ships", "trials"),
-        Some(TRACE_SCHEMA) => (TRACE, "ship", "records"),
+        Some(TRACE_SCHEMA) => (TRACE_ID, "ship", "records"),
         other => {
             let expected = format!("expected \"{FIT_SCHEMA}\" or \"{TRACE_SCHEMA}\"");
             let command = other.and_then(|schema| schema.split('/').next());
-            let cure = match command.filter(|command| ["fit", TRACE].contains(command)) {
+            let cure = match command.filter(|command| ["fit", TRACE_ID].contains(command)) {
                 Some(command) => format!("make it again with `study {command}`"),
                 None => EXPECTED.to_owned(),
             };
@@ -60,7 +60,7 @@ pub fn read_stored_ships(shown: &str, text: &str) -> Result<StoredShips, Failure
         refuse(format!("it has no `{key}`, as an older program wrote it; make it again with `study {command}`"))
     })?;
     let ships: BTreeMap<String, IdentifiedShip> = match command {
-        TRACE => [(TRACE.to_owned(), serde_json::from_value(stored).map_err(unread)?)].into(),
+        TRACE_ID => [(TRACE_ID.to_owned(), serde_json::from_value(stored).map_err(unread)?)].into(),
         _ => serde_json::from_value(stored).map_err(unread)?,
     };
     let verdict = value["verdict"]["method"].as_str().filter(|id| ships.contains_key(*id)).map(str::to_owned);

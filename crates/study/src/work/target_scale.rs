@@ -57,7 +57,7 @@ impl TargetScale {
     /// Scale at which a record is replayed: the requested one if its length is that of the record, else that of the
     /// record, else `scale`. If a length is requested without a speed, the approach speed is that of equal Froude
     /// number, not the speed in the record, which falls from the first rows on.
-    pub fn from_record(scale: Option<Self>, record: &Trial) -> Option<Self> {
+    pub fn for_replay_of(scale: Option<Self>, record: &Trial) -> Option<Self> {
         match (record.particulars(), scale) {
             (Some(ship), Some(asked)) if asked.is_requested && is_same_length(ship.length, asked.length) => scale,
             (ship, _) => ship.map(Self::from_particulars).or(scale),
@@ -87,7 +87,7 @@ pub fn is_same_scale(a: Particulars, b: Particulars) -> bool {
 /// it has a speed.
 ///
 /// Fails if the ship cannot be scaled.
-pub fn at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
+pub fn ship_at_scale(ship: &IdentifiedShip, scale: Option<TargetScale>) -> Result<IdentifiedShip, IdentifiedShipError> {
     let Some(TargetScale { length, speed, is_requested }) = scale else { return Ok(ship.clone()) };
     // The speed of a trial is estimated from its beginning and never quite equals that of another trial.
     let is_speed_of = |scale: Particulars, speed| match is_requested {

@@ -19,7 +19,7 @@ use trial::{Channel, Trial};
 use super::earlier_trials::{self, EarlierModel};
 use super::planned;
 use super::single_records::RecordedZigZags;
-use crate::documents::curves::{self, TraceCurves, slugs, suffix};
+use crate::documents::curves::{self, TraceCurves, file_name_suffix, record_slugs};
 use crate::documents::{self, TRACE_FILE, missing_moment, prior};
 use crate::options::{TraceRequest, WithheldChannel};
 use crate::progress;
@@ -95,8 +95,8 @@ pub fn trace(
     warnings: &mut Warnings,
 ) -> Result<TraceResult, Failure> {
     let together = scales::to_common_scale(records, validation)?;
-    warnings.extend(earlier_trials::check(priors, &together.trials)?);
-    let settings = &Settings { earlier_hulls: earlier_trials::hulls(priors), ..settings.clone() };
+    warnings.extend(earlier_trials::check_usable_as_priors(priors, &together.trials)?);
+    let settings = &Settings { earlier_hulls: earlier_trials::hulls_of_models(priors), ..settings.clone() };
     let watch = TraceWatch {
         busy: progress::spinner("searching for what the model lacks", quiet),
         terminal: Terminal::new("records left out in turn", quiet),
@@ -115,21 +115,21 @@ pub fn trace(
         file: file_and_hash(trial).0.to_owned(),
         sha256: file_and_hash(trial).1.to_owned(),
         held_out: number >= trials.len(),
-        curves: format!("replay{}.csv", suffix(&names, number)),
-        innovations: innovations.get(number).map(|_| format!("innovations{}.csv", suffix(&names, number))),
+        curves: format!("replay{}.csv", file_name_suffix(&names, number)),
+        innovations: innovations.get(number).map(|_| format!("innovations{}.csv", file_name_suffix(&names, number))),
         length_m: trial.particulars().map(|ship| ship.length),
         speed_m_s: trial.particulars().map(|ship| ship.speed),
         trial_particulars: trial_particulars_entry(trial),
     };
     let entries: Vec<RecordEntry> = records.iter().chain(validation).enumerate().zip(&names).map(entry).collect();
     let mut tables = tables(&analysis, [&trials, &held_out], &entries, &innovations);
-    let (staircase, table) = curves::staircase(analysis.inclusion_path());
-    let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &slugs(&names));
+    let (staircase, table) = curves::staircase_entries_and_csv(analysis.inclusion_path());
+    let (moments, curves_of_moments) = missing_moments(&analysis, &entries, &record_slugs(&names));
     tables.extend(curves_of_moments.into_iter().chain(table));
     let ship = identified_ship::from_analysis(&analysis, &shown);
     warnings.extend(ship.logged_rudder_delay().map(|late| WarningCode::LateRudder.warning(late_rudder_message(late))));
-    let earlier_trials = earlier_trials::entry(priors, &trials, &shown);
-    warnings.extend(earlier_trials.as_ref().and_then(prior::warning));
+    let earlier_trials = earlier_trials::earlier_trials_entry(priors, &trials, &shown);
+    warnings.extend(earlier_trials.as_ref().and_then(prior::contradiction_warning));
     let output_error = output_error::Settings::default().build().map_err(Failure::input)?;
     let zigzags = RecordedZigZags::from_trials(&trials);
     let document = TraceDocument {
@@ -156,11 +156,11 @@ fn tables(
     innovations: &[Innovations],
 ) -> Vec<(String, String)> {
     let compared = fitted.iter().chain(held_out).zip(analysis.identification.iter().chain(&analysis.validation));
-    let tables = compared.map(|(trial, comparison)| curves::table(trial, comparison));
+    let tables = compared.map(|(trial, comparison)| curves::record_csv(trial, comparison));
     let tables = entries.iter().map(|entry| entry.curves.clone()).zip(tables);
     let innovations = entries.iter().zip(innovations);
     let innovations =
-        innovations.filter_map(|(entry, series)| Some((entry.innovations.clone()?, curves::innovations(series))));
+        innovations.filter_map(|(entry, series)| Some((entry.innovations.clone()?, curves::innovations_csv(series))));
     tables.chain(innovations).collect()
 }
 
@@ -170,15 +170,16 @@ fn missing_moments(
     entries: &[RecordEntry],
     slugs: &[String],
 ) -> (Vec<MissingMomentEntry>, Vec<(String, String)>) {
-    let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
+    let explains =
+        analysis.structures.weighted_members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
     let (mut moments, mut tables) = (Vec::new(), Vec::new());
     for ((record, slug), missing) in entries.iter().zip(slugs).zip(analysis.missing_moments()) {
         let Some(missing) = missing else { continue };
         let stem = format!("missing-moment-{slug}");
         let labels = [record.file.as_str(), &record.name, &stem];
-        let entry = missing_moment::entry(&missing, labels, analysis.document.verdict, explains);
-        tables.push((entry.moment.clone(), missing_moment::table_over_time(&missing)));
-        tables.push((entry.curves.clone(), missing_moment::table_over_channels(&missing)));
+        let entry = missing_moment::missing_moment_entry(&missing, labels, analysis.document.verdict, explains);
+        tables.push((entry.moment.clone(), missing_moment::csv_over_time(&missing)));
+        tables.push((entry.curves.clone(), missing_moment::csv_over_channels(&missing)));
         moments.push(entry);
     }
     (moments, tables)
@@ -200,7 +201,7 @@ fn refused(first: &Trial, error: &TraceError) -> Failure {
 fn larger_rudder(analysis: &Analysis, fitted: &[Trial], held_out: &[Trial]) -> Option<String> {
     let seen = fitted.iter().map(Trial::largest_rudder).fold(0.0, f64::max);
     let failed = held_out.iter().zip(&analysis.validation).filter_map(|(trial, comparison)| {
-        let coverage = comparison.after.coverage().filter(|coverage| !coverage.is_nominal())?;
+        let coverage = comparison.average_replay.band_coverage().filter(|coverage| !coverage.is_nominal())?;
         (trial.largest_rudder() > RANGE_FACTOR * seen).then_some((trial, coverage))
     });
     let (trial, coverage) = failed.max_by(|(a, _), (b, _)| a.largest_rudder().total_cmp(&b.largest_rudder()))?;
@@ -209,7 +210,7 @@ fn larger_rudder(analysis: &Analysis, fitted: &[Trial], held_out: &[Trial]) -> O
         "First a trial with {rudder}° of rudder: beyond the fitted {seen}° the model fails, and its 95 % band holds {} % \
          of the headings of {}. ",
         fixed(100.0 * coverage.share(), 0),
-        names::record(trial.name())
+        names::record_name(trial.name())
     ))
 }
 
@@ -223,14 +224,14 @@ fn next_trial(analysis: &Analysis, trials: &[Trial], held_out: &[Trial]) -> Stri
     let pairs = |pairs: &[[String; 2]]| -> String {
         pairs.iter().map(|[a, b]| format!("{a} from {b}")).collect::<Vec<_>>().join(", ")
     };
-    let gains = [(pairs(&best.separated), "separate"), (best.revealed.join(", "), "show")];
+    let gains = [(pairs(&best.separated_pairs), "separate"), (best.revealed_effects.join(", "), "show")];
     let gains: Vec<String> =
         gains.iter().filter(|(pairs, _)| !pairs.is_empty()).map(|(pairs, verb)| format!("{verb} {pairs}")).collect();
     let gains = match gains.as_slice() {
         [] => String::from("is the most informative of the standard manoeuvres"),
         gains => format!("would {}", gains.join(" and ")),
     };
-    let limits = match best.inseparable.as_slice() {
+    let limits = match best.inseparable_pairs.as_slice() {
         [] => String::new(),
         alike => format!("; it would not separate {}", pairs(alike)),
     };

@@ -166,7 +166,7 @@ impl Run {
 /// A 10/10 zig-zag of YUKUN as a CSV record of time, heading and rudder: 300 s at 1 Hz, perfect instruments, rudder
 /// rate 2.5 deg/s.
 pub fn zig_zag_csv() -> String {
-    zig_zag_csv_of(&ship::ships::find("yukun").expect("it is in the registry"))
+    zig_zag_csv_of(&ship::ships::find_ship("yukun").expect("it is in the registry"))
 }
 
 /// As [`zig_zag_csv`], of another ship.
@@ -174,7 +174,7 @@ pub fn zig_zag_csv_of(ship: &Ship) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { period: 1.0, duration: Some(300.0), ..Recording::default() },
+        recording: Recording { sampling_period: 1.0, duration: Some(300.0), ..Recording::default() },
         ..Simulation::new(SimulatedShip::from_ship(ship), manoeuvre)
     };
     let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");
@@ -229,5 +229,5 @@ pub fn of_repository(path: &str) -> PathBuf {
 
 /// SHA-256 of bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    campaign::scenario::hex(&Sha256::digest(bytes))
+    campaign::scenario::hex_digits(&Sha256::digest(bytes))
 }

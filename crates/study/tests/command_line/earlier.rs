@@ -10,7 +10,7 @@ use crate::desk::{Desk, with_column, zig_zag_csv};
 const KVLCC2: [&str; 4] = ["--length-m", "320", "--speed-m-s", "7.97"];
 
 fn record(ship: &str, angle_deg: f64, change_deg: f64) -> String {
-    let ship = ship::ships::find(ship).expect("it is in the registry");
+    let ship = ship::ships::find_ship(ship).expect("it is in the registry");
     zig_zag_with_speed(SimulatedShip::from_ship(&ship), angle_deg, change_deg)
 }
 
@@ -19,7 +19,7 @@ pub fn zig_zag_with_speed(ship: SimulatedShip, angle_deg: f64, change_deg: f64) 
     let manoeuvre = Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(change_deg));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.34)),
-        recording: Recording { period: 4.0, duration: Some(1200.0), ..Recording::default() },
+        recording: Recording { sampling_period: 4.0, duration: Some(1200.0), ..Recording::default() },
         ..Simulation::new(ship, manoeuvre)
     };
     let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;

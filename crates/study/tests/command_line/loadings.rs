@@ -48,7 +48,7 @@ fn values(at: &HullParticulars) -> (HullModel, Vec<f64>) {
 fn record(angle_deg: f64) -> String {
     let (form, values) = values(&particulars(6.5, 0.7));
     let hull = form.with_coefficients(&values).expect("a ship");
-    let ship = ScaledHull { hull, length: 160.0, speed: 7.7, propeller: None };
+    let ship = ScaledHull { hull, length: 160.0, speed: 7.7, propeller_rate: None };
     zig_zag_with_speed(SimulatedShip::from_dynamics(Arc::new(ship)), angle_deg, angle_deg)
 }
 
@@ -74,7 +74,7 @@ fn truth(desk: &Desk) {
     hull.particulars = keyed_particulars(&at);
     hull.coefficients.iter_mut().zip(values(&at).1).for_each(|(own, value)| own.value = value);
     hull.covariance.iter_mut().flatten().for_each(|entry| *entry = 0.0);
-    hull.model_error_moment.deviation_rudder_rad = 0.0;
+    hull.model_error_moment.sd_rudder_rad = 0.0;
     ship["hulls"] = json!([hull]);
     desk.file("truth.json", document.to_string());
 }

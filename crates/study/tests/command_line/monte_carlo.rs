@@ -263,7 +263,7 @@ fn drawn_ships_are_the_same_in_every_cell_and_every_shard() {
     assert!(whole == blocks(&desk, "results/study"));
 
     let rows = rows(&desk, "whole");
-    let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();
+    let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn_values.as_deref().expect("a ship of its own")).collect();
     assert_eq!(ships[..80], ships[80..], "paired over the cells");
     let is_truth = |row: &StudyRow, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);
     assert!(rows.iter().zip(&ships).all(|(row, ship)| is_truth(row, ship)), "the truth is what was drawn");

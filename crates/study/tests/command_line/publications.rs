@@ -49,7 +49,7 @@ fn the_page_over_published_results_is_that_of_the_script() {
 fn manifests_of_published_studies_can_be_run() {
     let desk = Desk::new();
     let published = of_repository("results/published");
-    for name in campaign::disk::names(&published).expect("the folder is there") {
+    for name in campaign::disk::entry_names(&published).expect("the folder is there") {
         let manifest = published.join(&name).join("manifest.toml");
         if fs::read_to_string(&manifest).is_ok_and(|text| !text.contains("records.")) {
             desk.run(&["check", &manifest.to_string_lossy()]).is_done();
@@ -66,7 +66,7 @@ fn programs() -> Vec<(String, Table)> {
         let stamp = || table("program.toml")?.remove("program")?.try_into().ok();
         table("manifest.toml").or_else(stamp).unwrap_or_default()
     };
-    let names = campaign::disk::names(&published).expect("the folder is there");
+    let names = campaign::disk::entry_names(&published).expect("the folder is there");
     names.iter().map(|name| (name.clone(), program(name))).collect()
 }
 

@@ -21,8 +21,9 @@ const LISTS: [(&str, &str); 6] = [
 const COMMANDS: &str = "\
 # Commands
 
-This page lists every command of `study` with its arguments and options, in the words of `study COMMAND --help`. It is made by `cargo test -p study
---test command_line write_the_reference -- --ignored`.
+This page lists every command of `study` with its arguments and options, as `study COMMAND --help` prints them. [The
+tutorial](../tutorial/first-record.md) shows `fit`, `trace` and `predict` at work. `cargo test -p study --test
+command_line write_the_reference -- --ignored` makes this page.
 
 ";
 

@@ -274,7 +274,7 @@ fn coverage_of_predictions_is_drawn() {
     desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
     let drawn = desk.text("out/predictions.svg");
     assert!(
-        drawn.contains("90 % intervals that hold")
+        drawn.contains("90 % intervals that contain")
             && drawn.contains("width [% of value]")
             && drawn.contains("output-error"),
         "{drawn}"

@@ -15,7 +15,7 @@ pub fn second_order() -> Ship {
 }
 
 fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
-    let mut ship = ships::find("yukun").expect("it is in the registry");
+    let mut ship = ships::find_ship("yukun").expect("it is in the registry");
     let ShipModel::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
     parameters.extend(values);

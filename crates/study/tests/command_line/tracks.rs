@@ -15,10 +15,10 @@ const LAG: f64 = 12.0;
 
 /// A record of the Mariner with positions in a current (north and east, m/s), and without speed; 1 Hz.
 fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
-    let ship = ship::ships::find("mariner").expect("it is in the registry");
+    let ship = ship::ships::find_ship("mariner").expect("it is in the registry");
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { period: 1.0, duration: Some(duration), ..Recording::default() },
+        recording: Recording { sampling_period: 1.0, duration: Some(duration), ..Recording::default() },
         ..Simulation::new(SimulatedShip::from_ship(&ship), manoeuvre)
     };
     let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;

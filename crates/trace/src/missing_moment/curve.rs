@@ -130,7 +130,7 @@ impl CurveEquations {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MomentCurve {
     /// Values of the channel over the range of the record, SI units and rad.
-    pub x: Vec<f64>,
+    pub channel_values: Vec<f64>,
     /// Moment, rad of rudder, with mean zero over the rows of the record.
     pub moment: Vec<f64>,
     /// Half-width of the simultaneous 95 % band, rad of rudder.
@@ -138,7 +138,7 @@ pub struct MomentCurve {
     /// Curves of the explanations, in their order, estimated likewise from their heading responses, rad of rudder.
     pub explanations: Vec<Vec<f64>>,
     /// Variance per second of the remaining walk, rad² of rudder per s.
-    pub walk: f64,
+    pub walk_intensity: f64,
     /// Deviance −2 log L with the curve, up to a constant of the record.
     pub deviance: f64,
 }
@@ -188,9 +188,9 @@ impl MomentCurve {
             moment: of_grid.iter().map(|values| along(&coefficients, values)).collect(),
             half_width: of_grid.iter().map(half_width).collect(),
             explanations: explanations.iter().map(other).collect(),
-            walk: intensity * variance,
+            walk_intensity: intensity * variance,
             deviance: deviance(square, &filter, count),
-            x: grid,
+            channel_values: grid,
         })
     }
 

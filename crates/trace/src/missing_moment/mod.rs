@@ -69,9 +69,9 @@ pub struct MomentOverChannel {
     /// Curve with its band.
     pub curve: MomentCurve,
     /// Share, 0 to 1, of the variance per second of the walk that the curve explains; `None` if the moment is constant.
-    pub share: Option<f64>,
+    pub explained_share: Option<f64>,
     /// Indices of the explanations inside the band everywhere; empty if zero is inside as well.
-    pub inside: Vec<usize>,
+    pub explanations_inside: Vec<usize>,
 }
 
 /// Missing moment of one record.
@@ -82,7 +82,7 @@ pub struct MissingMoment {
     /// Smoothed moment, rad of rudder.
     pub moment: Vec<f64>,
     /// Standard deviation of the smoothed moment, rad of rudder.
-    pub sd: Vec<f64>,
+    pub moment_sd: Vec<f64>,
     /// Values of the available channels at the rows with a heading, SI units and rad.
     pub channels: Vec<(MomentChannel, Vec<f64>)>,
     /// Candidate explanations.
@@ -115,16 +115,16 @@ impl MissingMoment {
         sd: f64,
         explanations: Vec<RelativeResponse>,
     ) -> Option<Self> {
-        let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+        let time: Vec<f64> = record.observed_rows.iter().map(|&row| record.time[row]).collect();
         let count = time.len();
         if count < MIN_ROWS || !base.K_over_T.is_normal() {
             return None;
         }
-        let noise = |&row: &usize| record.full_readings as f64 / record.readings[row] as f64;
-        let variances = record.observed.iter().map(noise).collect();
+        let noise = |&row: &usize| record.full_readings as f64 / record.row_readings[row] as f64;
+        let variances = record.observed_rows.iter().map(noise).collect();
         let rows = MomentRows::new(*base, time.clone(), variances, sd);
-        let first = record.heading[record.observed[0]];
-        let heading = record.observed.iter().map(|&row| record.heading[row] - first).collect();
+        let first = record.heading[record.observed_rows[0]];
+        let heading = record.observed_rows.iter().map(|&row| record.heading[row] - first).collect();
         let column = HeadingRows { heading, forced: rows.rudder_response(&record.rudder) };
         let square = |filter: &MomentFilter| filter.whitened(&column).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
@@ -143,7 +143,7 @@ impl MissingMoment {
         let signals = [
             (MomentChannel::Speed, &record.speed),
             (MomentChannel::WindFrom, &record.wind_from),
-            (MomentChannel::Sway, &record.sway),
+            (MomentChannel::Sway, &record.sway_velocity),
         ];
         channels.extend(
             signals.into_iter().filter_map(|(channel, signal)| Some((channel, at_rows(signal.as_ref()?, &time)))),
@@ -159,12 +159,12 @@ impl MissingMoment {
             .iter()
             .filter_map(|(channel, x)| {
                 let curve = MomentCurve::new(&rows, gain, &column, x, &responses)?;
-                let share = varies.then(|| (1.0 - curve.walk / (intensity * unit)).max(0.0));
-                let inside = match curve.contains_zero() {
+                let explained_share = varies.then(|| (1.0 - curve.walk_intensity / (intensity * unit)).max(0.0));
+                let explanations_inside = match curve.contains_zero() {
                     true => Vec::new(),
                     false => (0..responses.len()).filter(|&k| curve.contains(&curve.explanations[k])).collect(),
                 };
-                Some(MomentOverChannel { channel: *channel, curve, share, inside })
+                Some(MomentOverChannel { channel: *channel, curve, explained_share, explanations_inside })
             })
             .collect();
         let rank = |moment: &MomentOverChannel| (moment.curve.contains_zero(), moment.curve.deviance);
@@ -173,7 +173,7 @@ impl MissingMoment {
             a.cmp(&b).then(first.total_cmp(&second))
         });
         Some(Self {
-            sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
+            moment_sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
             explanation_moments: responses
                 .iter()
                 .map(|response| filter.smoothed(response).iter().map(|state| state[2]).collect())
@@ -188,7 +188,7 @@ impl MissingMoment {
 
     /// Ends of the 95 % interval of the moment at a row, rad of rudder.
     pub fn interval(&self, row: usize) -> [f64; 2] {
-        let half = 1.96 * self.sd[row];
+        let half = 1.96 * self.moment_sd[row];
         [self.moment[row] - half, self.moment[row] + half]
     }
 }

@@ -6,10 +6,10 @@
 //!
 //! Source of the smoother: Bryson and Frazier (1963).
 
-use estimation::kalman::smoother::Smoother;
-use estimation::kalman::{Step, System};
+use estimation::kalman::smoother::KalmanSmoother;
+use estimation::kalman::{LinearStep, LinearSystem};
 use nalgebra::DMatrix;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use ship::{FirstOrder, Polyline};
 
 /// Initial standard deviations of heading (rad), yaw rate (rad/s) and moment (rad of rudder).
@@ -34,7 +34,7 @@ pub(super) struct MomentRows {
     /// Variance of the noise of every row, in units of the variance of a full row.
     variance: Vec<f64>,
     /// Duration (s) of every distinct step, with its transition and its covariance for λ = 1.
-    steps: Vec<(f64, Step<STATES>)>,
+    steps: Vec<(f64, LinearStep<STATES>)>,
     /// Index of the step before every row; the first is unused.
     of_row: Vec<usize>,
     /// Initial variance of every state, in units of σ².
@@ -48,13 +48,13 @@ impl MomentRows {
         generator[(0, 1)] = 1.0;
         generator[(1, 1)] = -base.inverse_T;
         generator[(1, 2)] = base.K_over_T;
-        let mut steps: Vec<(f64, Step<STATES>)> = Vec::new();
+        let mut steps: Vec<(f64, LinearStep<STATES>)> = Vec::new();
         let mut of_row = vec![0];
         for pair in time.windows(2) {
             let h = pair[1] - pair[0];
             let equal = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
             of_row.push(equal.unwrap_or_else(|| {
-                steps.push((h, Step::from_generator(&generator, 1.0, h)));
+                steps.push((h, LinearStep::from_generator(&generator, 1.0, h)));
                 steps.len() - 1
             }));
         }
@@ -76,10 +76,10 @@ impl MomentRows {
             let from = rudder.times().partition_point(|&corner| corner <= pair[0]);
             let to = rudder.times().partition_point(|&corner| corner < pair[1]).max(from);
             let corners = rudder.times()[from..to].iter().chain(&pair[1..]);
-            let (mut state, mut at, mut u) = (State::default(), pair[0], input(pair[0]));
+            let (mut state, mut at, mut u) = (YawState::default(), pair[0], input(pair[0]));
             for &corner in corners {
                 let (h, next) = (corner - at, input(corner));
-                state = Transition::new(a, h).advance(state, u, (next - u) / h);
+                state = FirstOrderTransition::new(a, h).advance(state, u, (next - u) / h);
                 (at, u) = (corner, next);
             }
             forced.push([state.heading, state.yaw_rate]);
@@ -90,12 +90,12 @@ impl MomentRows {
     /// Heading (rad) and yaw rate (rad/s) at every row, from rest at the row before, under a moment in rad of rudder
     /// that is linear between rows; zero at the first row.
     pub fn moment_response(&self, moment: &[f64]) -> Vec<[f64; 2]> {
-        let steps: Vec<Transition> =
-            self.steps.iter().map(|step| Transition::new(self.base.inverse_T, step.0)).collect();
+        let steps: Vec<FirstOrderTransition> =
+            self.steps.iter().map(|step| FirstOrderTransition::new(self.base.inverse_T, step.0)).collect();
         let step = |row: usize| {
             let (before, after) = (self.base.K_over_T * moment[row - 1], self.base.K_over_T * moment[row]);
             let transition = &steps[self.of_row[row]];
-            let state = transition.advance(State::default(), before, (after - before) / transition.h);
+            let state = transition.advance(YawState::default(), before, (after - before) / transition.time_step);
             [state.heading, state.yaw_rate]
         };
         (0..self.count()).map(|row| if row == 0 { [0.0; 2] } else { step(row) }).collect()
@@ -103,15 +103,15 @@ impl MomentRows {
 
     /// Filter for a random walk of the moment with λ, 1/s.
     pub fn filter(&self, intensity: f64) -> MomentFilter {
-        let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
+        let steps = self.steps.iter().map(|(_, step)| step.with_scaled_noise(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
-        MomentFilter(Smoother::new(System::from_rows(steps, initial, &self.of_row, &self.variance, None)))
+        MomentFilter(KalmanSmoother::new(LinearSystem::from_rows(steps, initial, &self.of_row, &self.variance, None)))
     }
 }
 
 /// Filter for one intensity of the walk.
 #[derive(Debug, Clone)]
-pub(super) struct MomentFilter(Smoother<STATES>);
+pub(super) struct MomentFilter(KalmanSmoother<STATES>);
 
 impl MomentFilter {
     /// Σ log S, the log determinant of the covariance over σ².

@@ -2,7 +2,7 @@ use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
 use ship::angle::from_deg;
 use ship::effects::listed_effect;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 
 use super::*;
 use crate::testing::{BASE, TrialPlan, of_columns, record, ship};
@@ -26,7 +26,7 @@ fn the_smoother_is_the_conditional_mean() {
         let column = HeadingRows { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
 
         // Heading at a time after a unit state; integrated over the walk.
-        let slope = |t: f64| Transition::new(inverse, t);
+        let slope = |t: f64| FirstOrderTransition::new(inverse, t);
         let of = |t: f64| -> [f64; 3] { [1.0, slope(t).phi1, 0.02 * slope(t).phi2] };
         let prior = sd.powi(-2);
         let (mut seen, mut cross) = (DMatrix::<f64>::from_diagonal(&DVector::from_vec(noise)), DMatrix::zeros(n, n));
@@ -78,7 +78,7 @@ fn a_known_input_acts_between_rows() {
     let truth = base();
     let record =
         PreparedRecord::unaveraged(&record(&ship(Vec::new()), TrialPlan { noise_deg: 0.0, ..TrialPlan::default() }));
-    let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+    let time: Vec<f64> = record.observed_rows.iter().map(|&row| record.time[row]).collect();
     let rows = MomentRows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
     let steered = rows.rudder_response(&record.rudder);
     let rudder: Vec<f64> = at_rows(&record.rudder, &time).iter().map(|delta| delta + BASE[2]).collect();
@@ -112,13 +112,13 @@ fn an_unstable_base_is_smoothed_as_well() {
     let time: Vec<f64> = (0..count).map(f64::from).collect();
     // Steered to stay on course; the moment begins at half time.
     let moment = |t: f64| if t < 750.0 { 0.0 } else { from_deg(2.0) };
-    let (mut heading, mut rudder, mut state) = (Vec::new(), Vec::new(), State::default());
+    let (mut heading, mut rudder, mut state) = (Vec::new(), Vec::new(), YawState::default());
     for &t in &time {
         let order = 0.2 * (0.05 * t).sin() - 2.0 * state.heading - 8.0 * state.yaw_rate;
         heading.push(state.heading + from_deg(0.02) * (1.7 * t * t).sin());
         rudder.push(order);
         let input = |delta: f64| 0.01 * (delta + moment(t));
-        let ahead = Transition::new(-0.02, 1.0);
+        let ahead = FirstOrderTransition::new(-0.02, 1.0);
         // The next order is the fixed point of an iteration.
         let next = (0..200).fold(order, |next, _| {
             let to = ahead.advance(state, input(order), input(next) - input(order));
@@ -129,7 +129,7 @@ fn an_unstable_base_is_smoothed_as_well() {
     let record = PreparedRecord::unaveraged(&of_columns(time, heading, rudder));
     let missing = MissingMoment::new(&record, &unstable, from_deg(0.02), Vec::new()).expect("enough rows");
     for (row, expected) in [(300, 0.0), (600, 0.0), (900, from_deg(2.0)), (1300, from_deg(2.0))] {
-        assert!((missing.moment[row] - expected).abs() < 4.0 * missing.sd[row].min(from_deg(0.3)), "{row}");
+        assert!((missing.moment[row] - expected).abs() < 4.0 * missing.moment_sd[row].min(from_deg(0.3)), "{row}");
     }
 }
 
@@ -145,17 +145,17 @@ fn cubic_damping_has_its_shape() {
         over_yaw_rate.channel,
         MomentChannel::YawRate,
         "{:?}",
-        missing.channel_moments.iter().map(|p| (p.channel, p.share)).collect::<Vec<_>>()
+        missing.channel_moments.iter().map(|p| (p.channel, p.explained_share)).collect::<Vec<_>>()
     );
-    assert!(over_yaw_rate.share.is_some_and(|share| share > 0.8), "{:?}", over_yaw_rate.share);
+    assert!(over_yaw_rate.explained_share.is_some_and(|share| share > 0.8), "{:?}", over_yaw_rate.explained_share);
     assert!(!over_yaw_rate.curve.contains_zero());
     // r' = … − c r³ equals the effect of a rudder angle of −c r³ T/K.
     let per = CUBE / BASE[1];
     let rates = &missing.channels[0].1;
     let mean = rates.iter().map(|r| -per * r.powi(3)).sum::<f64>() / rates.len() as f64;
-    let truth: Vec<f64> = over_yaw_rate.curve.x.iter().map(|r| -per * r.powi(3) - mean).collect();
+    let truth: Vec<f64> = over_yaw_rate.curve.channel_values.iter().map(|r| -per * r.powi(3) - mean).collect();
     assert!(over_yaw_rate.curve.contains(&truth));
-    let (x, moment) = (&over_yaw_rate.curve.x, &over_yaw_rate.curve.moment);
+    let (x, moment) = (&over_yaw_rate.curve.channel_values, &over_yaw_rate.curve.moment);
     let at = |r: f64| {
         let place = (1..x.len()).find(|&k| x[k] >= r).unwrap_or(x.len() - 1);
         moment[place - 1] + (moment[place] - moment[place - 1]) * (r - x[place - 1]) / (x[place] - x[place - 1])

@@ -6,7 +6,7 @@ fn record(time: &[f64]) -> PreparedRecord {
     let wave = |scale: f64| time.iter().map(|t| scale * (0.05 * t).sin()).collect::<Vec<_>>();
     let channels = [(Channel::Heading, wave(0.2)), (Channel::Rudder, wave(0.1))].into();
     let origin = RecordOrigin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
-    let columns = Columns { time: time.to_vec(), channels, unknown: Vec::new() };
+    let columns = Columns { time: time.to_vec(), channels, unknown_columns: Vec::new() };
     PreparedRecord::unaveraged(&Trial::new("noise", origin, columns).expect("a valid record"))
 }
 
@@ -65,7 +65,7 @@ fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatr
 fn whitening_is_the_inverse_root_of_the_covariance() {
     let even: Vec<f64> = (0..40).map(f64::from).collect();
     let uneven: Vec<f64> = (0..40).map(|k| f64::from(k) + 0.3 * f64::from(k % 3)).collect();
-    let waves = NarrowBand { sd: 2.0, frequency: 0.6, damping: 0.1 };
+    let waves = NarrowBandProcess { sd: 2.0, frequency: 0.6, damping: 0.1 };
     for time in [even, uneven] {
         let record = record(&time);
         let longest = record.duration();
@@ -104,8 +104,8 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
 fn rows_count_by_their_readings() {
     let time: Vec<f64> = (0..20).map(f64::from).collect();
     let mut record = record(&time);
-    record.readings.fill(4);
-    record.readings[7] = 1;
+    record.row_readings.fill(4);
+    record.row_readings[7] = 1;
     let noise = RecordNoise::new(&record, 0.1, 19.0, 4);
     for colour in
         [NoiseColour::WHITE, NoiseColour { correlated: Some((CorrelatedNoise::WhiteMoment, 1e-12)), waves: None }]

@@ -16,10 +16,11 @@ impl TraceParts<'_> {
         let shapes = self.attribution.shapes.as_ref()?;
         let rudder_deg = to_deg(self.attribution.unexplained_random_moment(self.rudder_noises)?.rudder_rms);
         let [_, after] = heading_error_squares(self.identification);
-        let rows = || self.identification.iter().map(|comparison| comparison.after.errors.rows as f64);
-        let of_row = self.problem.records.iter().zip(&shapes.heading_sd);
+        let rows =
+            || self.identification.iter().map(|comparison| comparison.average_replay.errors.heading_count as f64);
+        let of_row = self.fitted_records.records.iter().zip(&shapes.white_heading_sd);
         let noise = of_row.zip(rows()).map(|((record, sd), rows)| sd * sd * record.full_readings as f64 * rows);
-        let square = shapes.mean_square.map_or(after, |mean| mean * rows().sum::<f64>());
+        let square = shapes.heading_mean_square.map_or(after, |mean| mean * rows().sum::<f64>());
         let share = (square - noise.sum::<f64>()).max(0.0) / after.max(square);
         Some(DisturbanceEntry { rudder_deg, heading_error_share: share })
     }
@@ -30,10 +31,10 @@ impl TraceParts<'_> {
             return Vec::new();
         };
         let mut alternatives = shapes.alternatives(|record| self.span(record));
-        let displaced = self.attribution.displaced.iter().map(|effect| effect.term);
-        alternatives.extend(displaced.map(|(id, form, _): TermName| names::effect_form(id, form)));
+        let displaced = self.attribution.displaced_effects.iter().map(|effect| effect.term);
+        alternatives.extend(displaced.map(|(id, form, _): TermName| names::effect_form_name(id, form)));
         let entry = |named: &NamedShape| {
-            let ShapeCandidate { shape, record, .. } = *named.candidate;
+            let ShapeCandidate { shape, record_index: record, .. } = *named.candidate;
             let span = self.span(record);
             let acts = shape.span(span[1]).map(|times| times.map(|t| span[0] + t.clamp(0.0, span[1])));
             LocatedMomentEntry {
@@ -42,8 +43,8 @@ impl TraceParts<'_> {
                 only: self.record_name(record),
                 from_s: acts.map(|[from, _]| from),
                 until_s: acts.map(|[_, until]| until),
-                nats: named.loss,
-                rudder_deg: to_deg(named.size),
+                nats: named.loss_nats,
+                rudder_deg: to_deg(named.rudder_rms),
                 alternatives: alternatives.clone(),
                 formula: shape.formula().map(|formula| format!("located = {formula}")),
             }
@@ -53,7 +54,7 @@ impl TraceParts<'_> {
 
     /// Start and duration, s, of a record; for `None`, of the longest record.
     fn span(&self, record: Option<usize>) -> [f64; 2] {
-        let records = &self.problem.records;
+        let records = &self.fitted_records.records;
         let longest = || records.iter().max_by(|a, b| a.duration().total_cmp(&b.duration()));
         let record = record.map_or_else(longest, |number| records.get(number));
         record.map_or([0.0; 2], |record| [record.time[0], record.duration()])

@@ -239,7 +239,8 @@ impl WhitenedStructure {
         (self.square / self.freedom).sqrt()
     }
 
-    /// Normalised innovations of the records after the step.
+    /// Innovations of the heading over their standard deviation, dimensionless, after the step: a list for every
+    /// record, a value for every observed row.
     pub fn innovations(&self) -> Vec<Vec<f64>> {
         let (step, sd) = (self.gauss_newton_step(), self.sd());
         let normalised = |block: &HeadingSensitivities| {

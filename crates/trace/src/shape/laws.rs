@@ -3,7 +3,7 @@
 //!
 //! The size of a moment is its rudder angle over the standard deviation of the white heading noise, both in rad.
 
-use ship::narrow_band::NarrowBand;
+use ship::narrow_band::NarrowBandProcess;
 
 use crate::noise::{COMPASS_CORRELATION_SHARES, CorrelatedNoise, GUST_CORRELATION_SHARES, NoiseColour};
 
@@ -32,13 +32,19 @@ pub struct RandomLaw {
 
 impl RandomLaw {
     /// Law of white noise alone, or with the `waves` of the noise law; it has no further parameter.
-    fn white(waves: Option<NarrowBand>) -> Self {
+    fn white(waves: Option<NarrowBandProcess>) -> Self {
         let colour = NoiseColour { correlated: None, waves };
         Self { colour, parameter_count: 0, size: 0.0 }
     }
 
     /// Correlated noise of a size, for a ship of this K/T (1/s²) and a longest record of `longest` seconds.
-    pub fn correlated(kind: CorrelatedNoise, size: f64, gain: f64, longest: f64, waves: Option<NarrowBand>) -> Self {
+    pub fn correlated(
+        kind: CorrelatedNoise,
+        size: f64,
+        gain: f64,
+        longest: f64,
+        waves: Option<NarrowBandProcess>,
+    ) -> Self {
         let moment = (gain * size).powi(2);
         let level = match (kind, kind.correlation_time(longest)) {
             (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => 2.0 * moment / time / kind.intensity(longest),
@@ -64,7 +70,7 @@ fn decades(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> + Clone {
 
 /// All random laws for a ship of this K/T (1/s²), a longest record of `longest` seconds and rows `spacing` seconds
 /// apart. With `waves` of the noise law, no other waves are tried.
-pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> Vec<RandomLaw> {
+pub fn random_laws(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBandProcess>) -> Vec<RandomLaw> {
     let with_sizes = |kind, sizes: &mut dyn Iterator<Item = f64>| -> Vec<RandomLaw> {
         sizes.map(|size| RandomLaw::correlated(kind, size, gain, longest, waves)).collect()
     };
@@ -81,7 +87,7 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
         for period in WAVE_PERIODS.into_iter().filter(|period| *period > MIN_ROWS_PER_WAVE * spacing) {
             laws.extend(WAVE_SIZES.map(|sd| {
                 let frequency = std::f64::consts::TAU / period;
-                let sea = NarrowBand { sd, frequency, damping: WAVE_DAMPING };
+                let sea = NarrowBandProcess { sd, frequency, damping: WAVE_DAMPING };
                 let colour = NoiseColour { correlated: None, waves: Some(sea) };
                 RandomLaw { colour, parameter_count: colour.parameter_count(), size: sd }
             }));
@@ -91,14 +97,14 @@ pub fn all(gain: f64, longest: f64, spacing: f64, waves: Option<NarrowBand>) -> 
 }
 
 /// Smooth moments of unknown shape, which compete with all random laws.
-pub fn smooth_moments(gain: f64, longest: f64) -> Vec<RandomLaw> {
+pub fn smooth_moment_laws(gain: f64, longest: f64) -> Vec<RandomLaw> {
     let laws = |kind| decades(-1.0, 2.5, 0.5).map(move |size| RandomLaw::correlated(kind, size, gain, longest, None));
     CorrelatedNoise::smooth_moments().flat_map(laws).collect()
 }
 
 /// Indices of the laws under which all shapes are screened: white noise, the law `best` without shapes and weaker laws
 /// of its kind by half decades, walks by decades, and one compass error.
-pub fn screening_laws(laws: &[RandomLaw], best: usize) -> Vec<usize> {
+pub fn screening_law_indices(laws: &[RandomLaw], best: usize) -> Vec<usize> {
     let kind = |law: &RandomLaw| law.colour.correlated.map(|(kind, _)| kind);
     let is_step_below = |size: f64, weaker: f64, step: f64| {
         let count = (size / weaker).log10() / step;

@@ -57,9 +57,9 @@ pub struct NamedShape {
     /// Shape.
     pub candidate: Arc<ShapeCandidate>,
     /// Loss of log likelihood without the shape, nats.
-    pub loss: f64,
+    pub loss_nats: f64,
     /// Root mean square of the moment as a rudder angle, rad.
-    pub size: f64,
+    pub rudder_rms: f64,
 }
 
 /// Minimum loss of a listed shape, relative to the clearest shape.
@@ -81,29 +81,30 @@ pub struct MomentSize {
 #[derive(Debug, Clone)]
 pub struct ShapeAnalysis {
     /// Best explanation; without shapes if none is significant.
-    pub best: ShapeExplanation,
+    pub best_explanation: ShapeExplanation,
     /// Equivalent explanations: with no more shapes than the best, and within [`MAX_EQUIVALENT_GAIN_NATS`] of it.
-    pub equivalent: Vec<ShapeExplanation>,
+    pub equivalent_explanations: Vec<ShapeExplanation>,
     /// Coefficients of every shape of the best explanation, as root mean square moments, rad of rudder.
     pub coefficients: Vec<Vec<f64>>,
     /// Loss of log likelihood without each shape of the best explanation, nats.
-    pub losses: Vec<f64>,
+    pub losses_nats: Vec<f64>,
     /// Gain in log likelihood of the best explanation over the best random law without shapes, nats.
     pub gain_nats: f64,
     /// Criterion of the best random law without shapes.
     pub random_criterion: f64,
     /// Power of the likelihood: below one if the noise includes a model error. Gain and losses include it, criteria do
     /// not.
-    pub power: f64,
+    pub likelihood_power: f64,
     /// `true` if a smooth moment of unknown shape is significant and no shape is.
-    pub is_smooth: bool,
+    pub is_smooth_moment: bool,
     /// Random moment in addition to the shapes; `None` without one.
-    pub moment: Option<MomentSize>,
+    pub random_moment: Option<MomentSize>,
     /// Standard deviations of the white noise of a row of the records, rad.
-    pub heading_sd: Vec<f64>,
+    pub white_heading_sd: Vec<f64>,
     /// Mean square heading residual with the shapes, rad²; `None` without shapes.
-    pub mean_square: Option<f64>,
-    /// Normalised innovations of the records under the best explanation.
+    pub heading_mean_square: Option<f64>,
+    /// Innovations of the heading over their standard deviation, dimensionless, under the best explanation: a list for
+    /// every record, a value for every observed row.
     pub innovations: Vec<Vec<f64>>,
 }
 
@@ -116,22 +117,26 @@ impl ShapeAnalysis {
     /// Shapes of the best explanation with a clear loss, the clearest first; `duration` is the length of a record, s.
     pub fn named_shapes(&self, duration: impl Fn(Option<usize>) -> f64) -> Vec<NamedShape> {
         let size = |coefficients: &Vec<f64>| coefficients.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let shapes = self.best.shapes.iter().zip(&self.losses).zip(&self.coefficients);
-        let all =
-            shapes.map(|((shape, &loss), rms)| NamedShape { candidate: Arc::clone(shape), loss, size: size(rms) });
+        let shapes = self.best_explanation.shapes.iter().zip(&self.losses_nats).zip(&self.coefficients);
+        let all = shapes.map(|((shape, &loss), rms)| NamedShape {
+            candidate: Arc::clone(shape),
+            loss_nats: loss,
+            rudder_rms: size(rms),
+        });
         let mut all: Vec<NamedShape> = all.collect();
-        all.sort_by(|a, b| b.loss.total_cmp(&a.loss));
-        let least =
-            all.first().map_or(0.0, |clearest| (MIN_LOSS_RATIO * clearest.loss).max(MIN_GAIN_NATS).min(clearest.loss));
-        all.retain(|named| named.loss >= least);
+        all.sort_by(|a, b| b.loss_nats.total_cmp(&a.loss_nats));
+        let least = all
+            .first()
+            .map_or(0.0, |clearest| (MIN_LOSS_RATIO * clearest.loss_nats).max(MIN_GAIN_NATS).min(clearest.loss_nats));
+        all.retain(|named| named.loss_nats >= least);
         let from = |named: &NamedShape| named.candidate.shape.span(0.0).map(|[from, _]| from);
         let changes: Vec<(Option<usize>, Option<f64>)> = all
             .iter()
             .filter(|named| named.candidate.shape.is_change())
-            .map(|named| (named.candidate.record, from(named)))
+            .map(|named| (named.candidate.record_index, from(named)))
             .collect();
         all.retain(|named| {
-            let record = named.candidate.record;
+            let record = named.candidate.record_index;
             let is_near = |&(other, at): &(Option<usize>, Option<f64>)| {
                 let distance = at.zip(from(named)).map(|(at, from)| (at - from).abs());
                 other == record && distance.is_some_and(|distance| distance <= MAX_DISTANCE_SHARE * duration(record))
@@ -146,12 +151,12 @@ impl ShapeAnalysis {
     pub fn alternatives(&self, span: impl Fn(Option<usize>) -> [f64; 2]) -> Vec<String> {
         let classes =
             |all: &ShapeExplanation| all.shapes.iter().map(|shape| shape.shape.class()).collect::<BTreeSet<usize>>();
-        let mut seen = vec![classes(&self.best)];
+        let mut seen = vec![classes(&self.best_explanation)];
         let mut all = Vec::new();
-        for other in &self.equivalent {
+        for other in &self.equivalent_explanations {
             let classes = classes(other);
             if seen.iter().all(|seen| !classes.is_subset(seen) && !classes.is_superset(seen)) {
-                let shapes = other.shapes.iter().map(|shape| shape.shape.description(span(shape.record)));
+                let shapes = other.shapes.iter().map(|shape| shape.shape.description(span(shape.record_index)));
                 all.push(shapes.collect::<Vec<_>>().join(" and "));
                 seen.push(classes);
             }
@@ -195,7 +200,7 @@ impl<'a> ShapeProblem<'a> {
     /// Problem at a point, with motions predicted under a colour; `None` if its columns are dependent.
     fn new(point: StructurePoint<'a>, problem: &FittedRecords, law: &NoiseLaw, colour: &NoiseColour) -> Option<Self> {
         let spacing = problem.records.iter().map(|record| record.spacing).fold(f64::INFINITY, f64::min);
-        let laws = laws::all(point.theta[1].abs(), problem.longest_duration(), spacing, law.colour.waves);
+        let laws = laws::random_laws(point.theta[1].abs(), problem.longest_duration(), spacing, law.colour.waves);
         let motions = point.motions(colour);
         let linearised = point.linearised(&motions);
         let whitened = |law: &RandomLaw| {
@@ -217,12 +222,12 @@ impl<'a> ShapeProblem<'a> {
     /// Searches the shapes and summarises the best explanation.
     fn explained(self, problem: &FittedRecords, law: &NoiseLaw) -> Option<ShapeAnalysis> {
         let longest = problem.longest_duration();
-        let smooth = law.colour.waves.is_none().then(|| laws::smooth_moments(self.point.theta[1].abs(), longest));
+        let smooth = law.colour.waves.is_none().then(|| laws::smooth_moment_laws(self.point.theta[1].abs(), longest));
         let smooth = smooth.unwrap_or_default();
         let smooth = smooth.par_iter().map(|law| self.criterion_under(law)).reduce(|| f64::INFINITY, f64::min);
         let search = ShapeSearch {
             motions: &self.motions,
-            laws: &self.laws,
+            random_laws: &self.laws,
             whitening: &self.whitening,
             structure: &self.structure,
             unknowns: self.linearised.linear.unknowns,
@@ -230,9 +235,10 @@ impl<'a> ShapeProblem<'a> {
         let unit = UNIT / self.point.theta[0].max(MAX_TIME_S.recip());
         let ((mut best, mut without), mut tried) = search.explain(unit);
         let rows = self.linearised.linear.blocks.iter().map(|block| block.residual.len() as f64);
-        let power = rows.zip(&law.power).map(|(rows, power)| rows * power).sum::<f64>() / self.linearised.rows() as f64;
+        let power = rows.zip(&law.likelihood_power).map(|(rows, power)| rows * power).sum::<f64>()
+            / self.linearised.rows() as f64;
         if 0.5 * power * (self.criterion - best.criterion) < MIN_GAIN_NATS {
-            best = ShapeExplanation { shapes: Vec::new(), criterion: self.criterion, law_index: self.law };
+            best = ShapeExplanation { shapes: Vec::new(), criterion: self.criterion, random_law_index: self.law };
             without.clear();
         }
         tried.retain(|other| {
@@ -242,28 +248,28 @@ impl<'a> ShapeProblem<'a> {
         let whole = search.with_shapes(&best)?;
         let step = whole.gauss_newton_step();
         Some(ShapeAnalysis {
-            losses: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),
+            losses_nats: without.iter().map(|criterion| 0.5 * power * (criterion - best.criterion)).collect(),
             coefficients: search::coefficients(&best.shapes, &step),
-            mean_square: (!best.shapes.is_empty()).then(|| {
+            heading_mean_square: (!best.shapes.is_empty()).then(|| {
                 search::residual_sum_of_squares(&self.linearised.linear, &best.shapes, &step)
                     / self.linearised.rows() as f64
             }),
-            heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
-            moment: self.moment(&best, whole.sd(), [longest, problem.time]),
-            equivalent: tried,
+            white_heading_sd: self.point.sd.iter().map(|sd| sd * whole.sd()).collect(),
+            random_moment: self.moment(&best, whole.sd(), [longest, problem.ship_length_time]),
+            equivalent_explanations: tried,
             gain_nats: 0.5 * power * (self.criterion - best.criterion),
-            power,
+            likelihood_power: power,
             random_criterion: self.criterion,
-            is_smooth: best.shapes.is_empty() && 0.5 * power * (self.criterion - smooth) >= MIN_SMOOTH_GAIN,
+            is_smooth_moment: best.shapes.is_empty() && 0.5 * power * (self.criterion - smooth) >= MIN_SMOOTH_GAIN,
             innovations: whole.innovations(),
-            best,
+            best_explanation: best,
         })
     }
 
     /// Random moment of an explanation; `sd` is the standard deviation of the white noise in units of the white noise
     /// of the records.
     fn moment(&self, best: &ShapeExplanation, sd: f64, [longest, time]: [f64; 2]) -> Option<MomentSize> {
-        let law = &self.laws[best.law_index];
+        let law = &self.laws[best.random_law_index];
         let (kind, _) = law.colour.correlated.filter(|_| law.is_moment())?;
         let size = law.size * sd * self.point.sd.iter().copied().fold(0.0, f64::max);
         Some(match kind {

@@ -7,7 +7,7 @@
 use estimation::kalman::MAX_STATES;
 use ship::Replayable;
 use ship::dynamics::Dynamics;
-use ship::first_order::{State, Transition};
+use ship::first_order::{FirstOrderTransition, YawState};
 use ship::replay::replay_states;
 
 use crate::model::{Structure, solver_step};
@@ -38,7 +38,7 @@ pub struct PredictedMotion<'a> {
     pub rudder_rate: Vec<f64>,
     /// Way to starboard of the initial course at every row, per m/s of speed: ∫ sin(ψ − ψ₀) dt, s.
     pub way: Vec<f64>,
-    transitions: Vec<Transition>,
+    transitions: Vec<FirstOrderTransition>,
 }
 
 impl<'a> PredictedMotion<'a> {
@@ -81,7 +81,7 @@ impl<'a> PredictedMotion<'a> {
             record_index,
             base: [theta[0], theta[1]],
             rudder_rate: slopes(&record.time, &rudder),
-            transitions: intervals().map(|h| Transition::new(theta[0], h)).collect(),
+            transitions: intervals().map(|h| FirstOrderTransition::new(theta[0], h)).collect(),
             heading,
             yaw_rate,
             rudder,
@@ -92,23 +92,23 @@ impl<'a> PredictedMotion<'a> {
     /// Heading response at the observed rows to a moment that is linear between rows, rad per rad of rudder.
     pub fn heading_response(&self, moment: &[f64]) -> Vec<f64> {
         let gain = self.base[1];
-        let (mut state, mut row) = (State::default(), 0);
+        let (mut state, mut row) = (YawState::default(), 0);
         let at = |&observed: &usize| {
             while row < observed {
                 let (transition, [from, to]) = (&self.transitions[row], [gain * moment[row], gain * moment[row + 1]]);
-                state = transition.advance(state, from, (to - from) / transition.h);
+                state = transition.advance(state, from, (to - from) / transition.time_step);
                 row += 1;
             }
             state.heading
         };
-        self.record.observed.iter().map(at).collect()
+        self.record.observed_rows.iter().map(at).collect()
     }
 
     /// Signal at the rows after a first-order lag of time constant `lag` (s).
     pub fn lagged(&self, signal: impl Fn(usize) -> f64, lag: f64) -> Vec<f64> {
         let mut all = vec![signal(0)];
         for (row, transition) in self.transitions.iter().enumerate() {
-            let kept = (-transition.h / lag).exp();
+            let kept = (-transition.time_step / lag).exp();
             all.push(kept * all[row] + (1.0 - kept) * 0.5 * (signal(row) + signal(row + 1)));
         }
         all
@@ -116,7 +116,7 @@ impl<'a> PredictedMotion<'a> {
 
     /// Heading response to an initial unit yaw rate after a time (s), s.
     pub fn rate_response(&self, time: f64) -> f64 {
-        Transition::new(self.base[0], time).phi1
+        FirstOrderTransition::new(self.base[0], time).phi1
     }
 
     /// Start and duration, s.
@@ -127,15 +127,15 @@ impl<'a> PredictedMotion<'a> {
 
 /// Value at a row, linear between the `value`s of the observed rows, and constant before the first and after the last.
 fn interpolated(record: &PreparedRecord, row: usize, value: impl Fn(usize) -> f64) -> f64 {
-    let after = record.observed.partition_point(|&observed| observed < row);
-    let last = record.observed.len() - 1;
+    let after = record.observed_rows.partition_point(|&observed| observed < row);
+    let last = record.observed_rows.len() - 1;
     if after > last {
         return value(last);
     }
-    if after == 0 || record.observed[after] == row {
+    if after == 0 || record.observed_rows[after] == row {
         return value(after);
     }
-    let [from, to] = [after - 1, after].map(|k| record.time[record.observed[k]]);
+    let [from, to] = [after - 1, after].map(|k| record.time[record.observed_rows[k]]);
     let share = (record.time[row] - from) / (to - from);
     value(after - 1) * (1.0 - share) + value(after) * share
 }
@@ -174,7 +174,7 @@ mod tests {
         let read = |(row, psi): (usize, &f64)| if is_lost(row) { f64::NAN } else { *psi };
         let heading = clean.heading().iter().enumerate().map(read).collect();
         let record = PreparedRecord::unaveraged(&of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec()));
-        let at = |row: usize| interpolated(&record, row, |observed| record.observed[observed] as f64);
+        let at = |row: usize| interpolated(&record, row, |observed| record.observed_rows[observed] as f64);
         assert_eq!([0, 19, 25].map(at), [0.0, 19.0, 25.0]);
         (20..25).for_each(|row| assert!((at(row) - row as f64).abs() < 1e-9, "{row}: {}", at(row)));
     }

@@ -32,7 +32,7 @@ impl<'a> StructurePoint<'a> {
     /// Point of a fit, with the variances of a noise law.
     pub fn new(problem: &'a FittedRecords, fit: &'a StructureFit, law: &NoiseLaw) -> Self {
         let (theta, initial) = (fit.theta.clone(), fit.initial.clone());
-        let sd = law.variance.iter().map(|variance| variance.sqrt()).collect();
+        let sd = law.row_variance.iter().map(|variance| variance.sqrt()).collect();
         Self { problem, fit, sd, noise: problem.noise_transitions(theta[0]), theta, initial }
     }
 
@@ -117,7 +117,7 @@ impl<'a> StructurePoint<'a> {
     /// is largest.
     fn min_variance(&self) -> f64 {
         // With a typical gain for this length and speed, so that it is equal for every structure.
-        let floors = law::min_noise_variances(self.problem, self.problem.time.powi(-2));
+        let floors = law::min_noise_variances(self.problem, self.problem.ship_length_time.powi(-2));
         floors.iter().zip(&self.sd).map(|(floor, sd)| floor / (sd * sd)).fold(0.0, f64::max)
     }
 
@@ -153,7 +153,7 @@ fn use_predicted_rate(block: &mut HeadingSensitivities, motion: &PredictedMotion
 
 /// Columns of a restart of heading and yaw rate after each of the largest gaps.
 fn restarts(motion: &PredictedMotion) -> Vec<[Vec<f64>; 2]> {
-    let time: Vec<f64> = motion.record.observed.iter().map(|&row| motion.record.time[row]).collect();
+    let time: Vec<f64> = motion.record.observed_rows.iter().map(|&row| motion.record.time[row]).collect();
     let lengths: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted = lengths.clone();
     sorted.sort_by(f64::total_cmp);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::criterion::{GramProducts, HeadingColumn, WhitenedStructure, product};
 use super::dictionary::Shape;
-use super::laws::{RandomLaw, screening_laws};
+use super::laws::{RandomLaw, screening_law_indices};
 use super::library::shapes;
 use super::motion::PredictedMotion;
 use crate::linear::{HeadingSensitivities, Linearisation};
@@ -38,7 +38,7 @@ pub struct ShapeCandidate {
     /// Shape.
     pub shape: Shape,
     /// Index of the record in which the shape acts; `None` for all records.
-    pub record: Option<usize>,
+    pub record_index: Option<usize>,
     /// Penalty of the choice among places or forms, records and classes.
     pub penalty: f64,
     columns: Vec<HeadingColumn>,
@@ -52,7 +52,7 @@ pub struct ShapeExplanation {
     /// Criterion −2 log p + penalties.
     pub criterion: f64,
     /// Index of the random law.
-    pub law_index: usize,
+    pub random_law_index: usize,
 }
 
 /// Search for the shapes and the random law that explain a residual best.
@@ -60,7 +60,7 @@ pub struct ShapeSearch<'a> {
     /// Predicted motions of the records.
     pub motions: &'a [PredictedMotion<'a>],
     /// Random laws.
-    pub laws: &'a [RandomLaw],
+    pub random_laws: &'a [RandomLaw],
     /// Whitening under each law.
     pub whitening: &'a [RecordWhitening],
     /// Structure under each law; `None` if its columns are dependent.
@@ -89,7 +89,7 @@ impl ShapeSearch<'_> {
             (size.is_finite() && size > MIN_RMS).then(|| moments.iter().map(response).collect())
         };
         let columns = (0..moments.first()?.1.len()).map(column).collect::<Option<Vec<HeadingColumn>>>()?;
-        Some(ShapeCandidate { shape, record, penalty, columns })
+        Some(ShapeCandidate { shape, record_index: record, penalty, columns })
     }
 
     /// Candidates of all shapes; `unit` (s) is the time unit of the lags.
@@ -230,8 +230,8 @@ impl ShapeSearch<'_> {
     pub fn explain(&self, unit: f64) -> ((ShapeExplanation, Vec<f64>), Vec<ShapeExplanation>) {
         let library = self.library(unit);
         let (criterion, law) = best_law(self.structure).unwrap_or(NONE);
-        let laws = screening_laws(self.laws, law);
-        let mut current = ShapeExplanation { shapes: Vec::new(), criterion, law_index: law };
+        let laws = screening_law_indices(self.random_laws, law);
+        let mut current = ShapeExplanation { shapes: Vec::new(), criterion, random_law_index: law };
         let mut all = vec![current.clone()];
         let mut products = self.products(&laws, &library);
         for _ in 0..MAX_SHAPES {
@@ -241,7 +241,7 @@ impl ShapeSearch<'_> {
             let with = |shape: Arc<ShapeCandidate>| {
                 let (criterion, law_index) = self.best_law(&structures, &[&shape]);
                 let shapes = [current.shapes.as_slice(), &[shape]].concat();
-                ShapeExplanation { shapes, criterion: criterion + penalty, law_index }
+                ShapeExplanation { shapes, criterion: criterion + penalty, random_law_index: law_index }
             };
             let mut next: Vec<ShapeExplanation> = self.finalists(&criteria, &library).into_iter().map(with).collect();
             next.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
@@ -282,15 +282,15 @@ impl ShapeSearch<'_> {
         let all: Vec<&ShapeCandidate> = shapes.iter().map(Arc::as_ref).collect();
         let (criterion, law_index) =
             if all.is_empty() { best_law(self.structure).unwrap_or(NONE) } else { self.best_law(self.structure, &all) };
-        ShapeExplanation { shapes, criterion, law_index }
+        ShapeExplanation { shapes, criterion, random_law_index: law_index }
     }
 
     /// Explanation with the continuous parameters refined by coordinate search under its law, then under its best law;
     /// `None` if no parameter moves.
     fn refined(&self, from: &ShapeExplanation) -> Option<ShapeExplanation> {
-        let structure = self.structure[from.law_index].as_ref()?;
+        let structure = self.structure[from.random_law_index].as_ref()?;
         let mut shapes = from.shapes.clone();
-        let white = |shape: &ShapeCandidate| self.white(from.law_index, &[shape]).concat();
+        let white = |shape: &ShapeCandidate| self.white(from.random_law_index, &[shape]).concat();
         let mut columns: Vec<Vec<HeadingColumn>> = shapes.iter().map(|shape| white(shape)).collect();
         let mut lowest = structure.criterion_with(&columns.concat());
         let mut has_moved = false;
@@ -298,7 +298,7 @@ impl ShapeSearch<'_> {
             for number in 0..shapes.len() {
                 for (place, sign) in (0..shapes[number].shape.parameter_count()).flat_map(|k| [(k, 1.0), (k, -1.0)]) {
                     for _ in 0..3 {
-                        let ShapeCandidate { shape, record, penalty, .. } = *shapes[number];
+                        let ShapeCandidate { shape, record_index: record, penalty, .. } = *shapes[number];
                         let motion = &self.motions[record.unwrap_or(0)];
                         let extent = [motion.span()[1], motion.record.spacing];
                         let moved = shape.moved(place, sign * scale, extent);
@@ -321,7 +321,7 @@ impl ShapeSearch<'_> {
     /// Whitened structure with the shapes of an explanation appended, under its law.
     pub fn with_shapes(&self, all: &ShapeExplanation) -> Option<WhitenedStructure> {
         let shapes: Vec<&ShapeCandidate> = all.shapes.iter().map(Arc::as_ref).collect();
-        self.structure[all.law_index].as_ref()?.extended(&self.white(all.law_index, &shapes).concat())
+        self.structure[all.random_law_index].as_ref()?.extended(&self.white(all.random_law_index, &shapes).concat())
     }
 }
 

@@ -15,7 +15,7 @@ use super::dictionary::{ShipSignal, SignalFunction};
 use super::library::shapes;
 use super::*;
 use crate::base::FittedBase;
-use crate::candidates::ship_time;
+use crate::candidates::ship_length_time;
 use crate::fit::StoppingRule;
 use crate::full::start_point;
 use crate::linear::{HeadingSensitivities, Linearisation};
@@ -46,7 +46,7 @@ fn with_formula(formula: &str, c: f64) -> Trial {
 fn analysed(trials: &[Trial]) -> ShapeAnalysis {
     let base = FittedBase::fit(trials).expect("a base");
     let response = base.estimate.response;
-    let time = ship_time(trials, response.K_over_T);
+    let time = ship_length_time(trials, response.K_over_T);
     let records = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let problem = FittedRecords::new(records, response.inverse_T, time);
     let law = NoiseLaw::white(trials.len(), base.mean_square());
@@ -59,7 +59,7 @@ fn analysed(trials: &[Trial]) -> ShapeAnalysis {
 /// Clearest shape with its record.
 fn clearest(analysis: &ShapeAnalysis) -> (Shape, Option<usize>) {
     let named = analysis.named_shapes(|_| 300.0);
-    named.first().map(|named| (named.candidate.shape, named.candidate.record)).expect("a shape")
+    named.first().map(|named| (named.candidate.shape, named.candidate.record_index)).expect("a shape")
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn moments_that_depend_on_time_are_located() {
     let (shape, _) = clearest(&step);
     assert!(step.has_significant_shapes() && shape.dependence() == Dependence::Time, "{shape:?}");
     assert!(shape.span(300.0).is_some_and(|[from, _]| (from - 150.0).abs() < 6.0), "{shape:?}");
-    let size = step.named_shapes(|_| 300.0)[0].size;
+    let size = step.named_shapes(|_| 300.0)[0].rudder_rms;
     assert!((to_deg(size) - 0.5_f64.sqrt()).abs() < 0.15, "{} deg", to_deg(size));
 
     let periodic = analysed(&[in_moment(2, |t| (TAU * t / 70.0).sin())]);
@@ -104,13 +104,13 @@ fn moments_of_the_motion_are_located() {
 fn chance_is_no_shape() {
     for seed in 1..4 {
         let calm = analysed(&[in_moment(seed, |_| 0.0)]);
-        assert!(!calm.has_significant_shapes() && calm.moment.is_none() && !calm.is_smooth, "{calm:?}");
-        assert!((to_deg(calm.heading_sd[0]) / NOISE_DEG - 1.0).abs() < 0.15, "{:?}", calm.heading_sd);
+        assert!(!calm.has_significant_shapes() && calm.random_moment.is_none() && !calm.is_smooth_moment, "{calm:?}");
+        assert!((to_deg(calm.white_heading_sd[0]) / NOISE_DEG - 1.0).abs() < 0.15, "{:?}", calm.white_heading_sd);
         let walk = analysed(&[wandering(30.0, seed)]);
         // 30 deg at the end of 300 s without damping: a walk of √(20/300⁵) 30 deg/s² √s, over K/T as a rudder angle.
         let size = 30.0 * (20.0 / 300f64.powi(5)).sqrt() / BASE[1] * 150f64.sqrt();
-        let ratio = to_deg(walk.moment.expect("a random moment").rudder_rms) / size;
-        assert!(!walk.has_significant_shapes() && (0.4..2.5).contains(&ratio), "{ratio} {:?}", walk.best);
+        let ratio = to_deg(walk.random_moment.expect("a random moment").rudder_rms) / size;
+        assert!(!walk.has_significant_shapes() && (0.4..2.5).contains(&ratio), "{ratio} {:?}", walk.best_explanation);
     }
 }
 
@@ -183,7 +183,7 @@ fn criteria_are_those_of_dense_matrices() {
 #[test]
 fn laws_have_the_sizes_they_say() {
     let (gain, longest) = (BASE[1], 300.0);
-    let all = laws::all(gain, longest, 1.0, None);
+    let all = laws::random_laws(gain, longest, 1.0, None);
     assert_eq!(all.len(), 1 + 7 + 17 + 3 * 6 + 4 * 6 + 4 * 4);
     for law in all.iter().filter(|law| law.is_moment()) {
         let (kind, level) = law.colour.correlated.expect("a moment");
@@ -191,12 +191,12 @@ fn laws_have_the_sizes_they_say() {
         assert!((size / law.size - 1.0).abs() < 1e-9, "{kind:?} {size} {}", law.size);
     }
     // With waves of the noise law no other waves are tried, and rows far apart exclude short waves.
-    let sea = Some(ship::narrow_band::NarrowBand { sd: 1.0, frequency: 0.7, damping: 0.1 });
-    assert!(laws::all(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
-    assert_eq!(laws::all(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
+    let sea = Some(ship::narrow_band::NarrowBandProcess { sd: 1.0, frequency: 0.7, damping: 0.1 });
+    assert!(laws::random_laws(gain, longest, 1.0, sea).iter().all(|law| law.colour.waves == sea));
+    assert_eq!(laws::random_laws(gain, longest, 3.0, None).len(), all.len() - 2 * 4);
     let walk =
         all.iter().position(|law| law.size > 0.09 && law.size < 0.11 && law.parameter_count == 1).expect("a law");
-    let tried = laws::screening_laws(&all, walk);
+    let tried = laws::screening_law_indices(&all, walk);
     assert!(tried.contains(&0) && tried.contains(&walk) && tried.len() < 16, "{tried:?}");
 }
 
@@ -222,11 +222,11 @@ fn shapes_can_be_moved_and_typed() {
 
 #[test]
 fn tried_beside_the_best_law_are_weaker_ones_walks_and_an_error_of_the_compass() {
-    let laws = laws::all(0.01, 600.0, 1.0, None);
+    let laws = laws::random_laws(0.01, 600.0, 1.0, None);
     let kind = |law: &RandomLaw| law.colour.correlated.map(|(kind, _)| kind);
     let sea = |law: &RandomLaw| law.colour.waves.map(|sea| sea.frequency);
     let tried = |best: &dyn Fn(&RandomLaw) -> bool| {
-        let places = laws::screening_laws(&laws, laws.iter().position(best).expect("a law"));
+        let places = laws::screening_law_indices(&laws, laws.iter().position(best).expect("a law"));
         places.into_iter().map(|place| laws[place]).collect::<Vec<_>>()
     };
     let sizes = |among: &[RandomLaw], is: &dyn Fn(&RandomLaw) -> bool| -> Vec<f64> {

@@ -2,7 +2,9 @@
 //! terms.
 
 use estimation::levenberg_marquardt::NormalEquations;
-use estimation::subsets::{MAX_SUBSET_TERMS, RemovableTerm, condition_neutral, conditional_mean, subset_log_weights};
+use estimation::subsets::{
+    MAX_SUBSET_TERMS, RemovableTerm, condition_on_neutral, conditional_mean, subset_log_weights,
+};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -57,7 +59,10 @@ impl QuadraticPosterior {
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
             let places = ranges[number].clone().map(|place| (place, unknowns[place]));
-            RemovableTerm { log_odds: log_odds[number], ..removable(&structure.terms[number], theta, mean, places) }
+            RemovableTerm {
+                log_prior_odds: log_odds[number],
+                ..removable(&structure.terms[number], theta, mean, places)
+            }
         };
         // A term with a coefficient below its lower bound, the neutral value, is removed, the worst first.
         for _ in 0..ranges.len() {
@@ -85,7 +90,7 @@ impl QuadraticPosterior {
             let out = removable(&mean, worst);
             pinned[worst] = true;
             mean = conditional_mean(&covariance, &mean, &[&out]);
-            condition_neutral(&mut covariance, &out);
+            condition_on_neutral(&mut covariance, &out);
         }
         let removable: Vec<RemovableTerm> = (0..ranges.len()).map(|number| removable(&mean, number)).collect();
         let mut free = vec![true; count];
@@ -116,7 +121,7 @@ impl QuadraticPosterior {
                 let all = weights.iter().enumerate().filter(|(subset, _)| (subset & forms != 0) == with);
                 all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
             };
-            TermEvidence { log_ratio: highest(true) - highest(false) - term.log_odds, p_value }
+            TermEvidence { log_ratio: highest(true) - highest(false) - term.log_prior_odds, p_value }
         };
         (0..self.removable.len()).map(evidence).collect()
     }
@@ -163,12 +168,12 @@ impl QuadraticPosterior {
         let mut removable = self.removable.clone();
         while kept.len() > MAX_SUBSET_TERMS {
             let loss = |&k: &usize| {
-                subset_log_weights(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds
+                subset_log_weights(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_prior_odds
             };
             let place = (0..kept.len()).max_by(|&i, &j| loss(&kept[i]).total_cmp(&loss(&kept[j]))).expect("many");
             let out = removable[kept.remove(place)].clone();
             let moved = conditional_mean(&covariance, &mean, &[&out]);
-            condition_neutral(&mut covariance, &out);
+            condition_on_neutral(&mut covariance, &out);
             for &k in &kept {
                 removable[k]
                     .amplitudes
@@ -199,13 +204,17 @@ fn removable(
     mean: &DVector<f64>,
     places: impl Iterator<Item = (usize, Option<usize>)>,
 ) -> RemovableTerm {
-    let mut removable =
-        RemovableTerm { amplitudes: Vec::new(), shape_parameters: Vec::new(), log_prior: 0.0, log_odds: 0.0 };
+    let mut removable = RemovableTerm {
+        amplitudes: Vec::new(),
+        shape_parameters: Vec::new(),
+        log_prior_density: 0.0,
+        log_prior_odds: 0.0,
+    };
     for (((place, unknown), prior), neutral) in places.zip(&term.priors).zip(term.neutral()) {
         let Some(unknown) = unknown else { continue };
         let at = if prior.is_shape { theta[place] } else { neutral };
-        removable.log_prior += log_prior_normaliser(*prior);
-        removable.log_prior -= 0.5 * prior_deviation(*prior, at).powi(2);
+        removable.log_prior_density += log_prior_normaliser(*prior);
+        removable.log_prior_density -= 0.5 * prior_deviation(*prior, at).powi(2);
         match prior.is_shape {
             true => removable.shape_parameters.push(unknown),
             false => removable.amplitudes.push((unknown, mean[unknown] - neutral)),

@@ -25,7 +25,7 @@ pub struct WeighedStructure {
 #[derive(Debug, Clone)]
 pub struct Structures {
     /// Fitted structures.
-    pub all: Vec<WeighedStructure>,
+    pub weighed: Vec<WeighedStructure>,
     /// Probability of every candidate.
     pub probabilities: BTreeMap<TermName, f64>,
     /// Visibility of every candidate: expected squared coefficient over its variance with all other candidates present;
@@ -44,9 +44,9 @@ pub(super) fn names(structure: &Structure) -> Vec<TermName> {
 
 impl Structures {
     /// Members of the average with their weights, which sum to one.
-    pub fn members(&self) -> Vec<(f64, &StructureFit)> {
-        let least = self.all.first().map_or(0.0, |best| best.weight) / MAX_MEMBER_ODDS;
-        let kept: Vec<&WeighedStructure> = self.all.iter().filter(|weighed| weighed.weight >= least).collect();
+    pub fn weighted_members(&self) -> Vec<(f64, &StructureFit)> {
+        let least = self.weighed.first().map_or(0.0, |best| best.weight) / MAX_MEMBER_ODDS;
+        let kept: Vec<&WeighedStructure> = self.weighed.iter().filter(|weighed| weighed.weight >= least).collect();
         let total: f64 = kept.iter().map(|weighed| weighed.weight).sum();
         kept.iter().map(|weighed| (weighed.weight / total, &weighed.fit)).collect()
     }
@@ -54,7 +54,7 @@ impl Structures {
     /// Shares the weight with structures under other noise laws, given with the odds of their law against this law.
     pub(super) fn share_with(&mut self, rivals: Vec<(f64, Structures)>) {
         let total = 1.0 + rivals.iter().map(|(odds, _)| odds).sum::<f64>();
-        self.all.iter_mut().for_each(|weighed| weighed.weight /= total);
+        self.weighed.iter_mut().for_each(|weighed| weighed.weight /= total);
         for (odds, rival) in rivals {
             for (name, visibility) in &rival.visibility {
                 self.visibility.entry(*name).or_insert(*visibility);
@@ -86,7 +86,8 @@ impl Structures {
     pub fn ship_mean_square(&self) -> f64 {
         let is_ship =
             |all: &&WeighedStructure| all.fit.structure.terms.iter().all(|term| !term.effect.is_time_dependent());
-        let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
+        let residual =
+            self.weighed.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
         let (sum, rows) = residual.fold((0.0, 0.0), |(sum, rows), e| (sum + e * e, rows + 1.0));
         if rows > 0.0 { sum / rows } else { f64::INFINITY }
     }
@@ -130,7 +131,7 @@ impl Structures {
 
     /// Weights of the structures under all noise laws, with the names of their terms.
     fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
-        let chosen = self.all.iter().map(|weighed| (weighed.weight, names(&weighed.fit.structure)));
+        let chosen = self.weighed.iter().map(|weighed| (weighed.weight, names(&weighed.fit.structure)));
         chosen.chain(self.other_law_structures.iter().cloned())
     }
 }
@@ -144,7 +145,7 @@ mod tests {
 
     fn structures(rivals: &[(f64, &[TermName])]) -> Structures {
         Structures {
-            all: Vec::new(),
+            weighed: Vec::new(),
             probabilities: BTreeMap::new(),
             visibility: BTreeMap::new(),
             evidence: BTreeMap::new(),

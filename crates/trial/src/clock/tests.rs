@@ -2,7 +2,7 @@ use super::*;
 
 fn seconds(stamps: &[&str]) -> Result<Vec<f64>, StampFault> {
     let mut clock = StampConverter::default();
-    stamps.iter().map(|text| clock.seconds(Stamp::parse(text).expect(text))).collect()
+    stamps.iter().map(|text| clock.seconds(TimeStamp::parse(text).expect(text))).collect()
 }
 
 #[test]
@@ -48,12 +48,12 @@ fn one_moment_in_many_notations() {
     ];
     for text in same {
         let mut stamps = StampConverter::default();
-        assert_eq!(stamps.seconds(Stamp::parse(text).expect(text)), Ok(0.0));
+        assert_eq!(stamps.seconds(TimeStamp::parse(text).expect(text)), Ok(0.0));
         let clock = stamps.clock().expect("a stamp was read");
         assert_eq!((clock.day, clock.second, clock.utc_offset_min), (Some(20_777), 50_585.0, None), "{text}");
         assert_eq!((clock.time_of_day_at(60.0), clock.date_at(60.0)), ("14:04:05".into(), Some("2026-11-20".into())));
     }
-    let zone = |text| Stamp::parse(text).expect(text).utc_offset_min;
+    let zone = |text| TimeStamp::parse(text).expect(text).utc_offset_min;
     assert_eq!(zone("2026-11-20T14:03:05Z"), Some(0));
     assert_eq!(zone("2026-11-20T14:03:05.25+01:00"), Some(60));
     assert_eq!(zone("2026-11-20 14:03:05 -0330"), Some(-210));
@@ -79,10 +79,10 @@ fn what_is_no_stamp_is_none() {
         "Ä",
         "20-Nov",
     ] {
-        assert_eq!(Stamp::parse(text), None, "{text}");
+        assert_eq!(TimeStamp::parse(text), None, "{text}");
     }
-    assert!(Stamp::parse("20.11.2026").is_some_and(|stamp| !stamp.has_time()));
-    assert!(Stamp::parse("14:03").is_some_and(|stamp| stamp.has_time()));
+    assert!(TimeStamp::parse("20.11.2026").is_some_and(|stamp| !stamp.has_time()));
+    assert!(TimeStamp::parse("14:03").is_some_and(|stamp| stamp.has_time()));
 }
 
 #[test]
@@ -107,9 +107,9 @@ fn which_number_is_the_month_shows_where_the_date_changes() {
 #[test]
 fn a_clock_finds_its_times() {
     let mut stamps = StampConverter::default();
-    stamps.seconds(Stamp::parse("2026-11-20 23:00:00").expect("a stamp")).expect("it has a time");
+    stamps.seconds(TimeStamp::parse("2026-11-20 23:00:00").expect("a stamp")).expect("it has a time");
     let clock = stamps.clock().expect("a stamp was read");
-    let at = |text| clock.record_time(&Stamp::parse(text).expect(text));
+    let at = |text| clock.record_time(&TimeStamp::parse(text).expect(text));
     assert_eq!(at("23:10"), Some(600.0));
     assert_eq!(at("00:10:00"), Some(4200.0));
     assert_eq!(at("2026-11-21T00:10:00"), Some(4200.0));

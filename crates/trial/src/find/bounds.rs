@@ -1,7 +1,7 @@
 //! Bounds of a manoeuvre in a log: from the first execute, or the steady approach before it, to the last row before the
 //! rudder leaves its last hold or the propeller stops.
 
-use super::detection::{Approach, DetectedManoeuvre, MAX_APPROACH_SPEED_CHANGE, Quality};
+use super::detection::{ApproachState, DetectedManoeuvre, MAX_APPROACH_SPEED_CHANGE, RecordingQuality};
 use super::headings::thinned_median;
 use super::pattern::{Pattern, PreparedLog};
 use super::rudder::{Hold, finite_median};
@@ -59,8 +59,8 @@ pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<Det
         };
         let first = approach.as_ref().map_or(start, |segment| segment.first);
         let last = last.max(start);
-        let executes = pattern.holds.iter().filter(|hold| hold.first <= last).count();
-        let mut quality = Quality::from_rows(record, first, last);
+        let executes = pattern.holds.iter().filter(|hold| hold.first_row <= last).count();
+        let mut quality = RecordingQuality::from_rows(record, first, last);
         quality.rudder_spread = spread(pattern);
         if let Some(segment) = approach {
             quality.approach = Some(segment.approach);
@@ -68,10 +68,10 @@ pub(crate) fn with_bounds(record: &PreparedLog, patterns: &[Pattern]) -> Vec<Det
         }
         list.push(DetectedManoeuvre {
             manoeuvre: Some(pattern.manoeuvre.clone()),
-            from: time[first],
-            until: time[last],
-            first_execute: time[start],
-            executes,
+            start_time: time[first],
+            end_time: time[last],
+            first_execute_time: time[start],
+            execute_count: executes,
             quality,
         });
         free = last + 1;
@@ -85,7 +85,7 @@ fn spread(pattern: &Pattern) -> f64 {
         return 0.0;
     }
     let side_spread = |offset: usize| {
-        let levels = pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.level);
+        let levels = pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.median_angle);
         range(&levels.collect::<Vec<f64>>())
     };
     side_spread(0).max(side_spread(1))
@@ -94,7 +94,7 @@ fn spread(pattern: &Pattern) -> f64 {
 /// Last row of a manoeuvre in which the propeller turns.
 fn before_stop(record: &PreparedLog, pattern: &Pattern) -> usize {
     let (first, last) = (pattern.first(), pattern.last());
-    let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
+    let Some(propeller) = record.log.propeller_rate.and_then(|values| values.get(first..=last)) else { return last };
     let stopped = STOPPED_SHARE * finite_median(propeller.iter().map(|n| n.abs()));
     let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
     // A single row without revolutions is a fault of the channel, except the last row, which has no next row.
@@ -111,30 +111,30 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
     let hold = holds[0];
     // A slow rudder takes longer than a short first hold.
     let longest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
-    let movement = longest(&mut holds.windows(2).map(|pair| pair[1].from - pair[0].until));
+    let movement = longest(&mut holds.windows(2).map(|pair| pair[1].start_time - pair[0].end_time));
     let scale = scale.max(movement + longest(&mut holds.iter().map(Hold::duration)));
-    let window = time.partition_point(|&t| t < hold.from - scale).max(free).min(hold.first);
-    let end = holds[holds.len() - 1].last;
+    let window = time.partition_point(|&t| t < hold.start_time - scale).max(free).min(hold.first_row);
+    let end = holds[holds.len() - 1].last_row;
     let local = |hold: &Hold| holds::Hold {
-        side: if hold.level < 0.0 { -1.0 } else { 1.0 },
-        first: hold.first - window,
-        last: hold.last - window,
-        level: hold.level,
+        side: if hold.median_angle < 0.0 { -1.0 } else { 1.0 },
+        first_row: hold.first_row - window,
+        last_row: hold.last_row - window,
+        median_angle: hold.median_angle,
     };
     let mut local: Vec<holds::Hold> = holds.iter().map(local).collect();
     // A movement ends slowly, so its end does not give its rate: the hold begins before the rudder rests.
     let angle = &record.rudder.angle[window..=end];
     let laid = |&row: &usize| {
         let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
-        before < after && before >= MIN_HOLD_ANGLE_SHARE * hold.level.abs()
+        before < after && before >= MIN_HOLD_ANGLE_SHARE * hold.median_angle.abs()
     };
-    local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
+    local[0].first_row = (0..local[0].first_row).rev().take_while(laid).last().unwrap_or(local[0].first_row);
     if let ([_], Some(row)) = (&local[..], single_ramp(&time[window..=end], angle, &local[0], record.rudder.noise_sd)) {
         return window + row;
     }
     let rudder = RudderMovements::new(&time[window..=end], angle, &local, Some(record.rudder.noise_sd));
-    let Some(movement) = rudder.first_movement() else { return hold.first };
-    let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
+    let Some(movement) = rudder.first_movement() else { return hold.first_row };
+    let start = time.partition_point(|&t| t < movement.start_time.value).clamp(window, hold.first_row);
     let rate = movement.rate.map(f64::abs).or(rudder.rate);
     rate.map_or(start, |rate| {
         start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rudder.floor))
@@ -143,7 +143,7 @@ pub(crate) fn first_execute(record: &PreparedLog, holds: &[Hold], scale: f64, fr
 
 /// Last row before a hold in which the rudder has at most half of its angle; `None` if the record has no such row.
 fn half_way(angle: &[f64], hold: &holds::Hold) -> Option<usize> {
-    (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())
+    (0..hold.first_row).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.median_angle.abs())
 }
 
 /// First row on the line of a movement into a hold, at a rate in rad/s; 0 for a movement with too few rows. Steering to
@@ -152,8 +152,8 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
     let half = half_way(angle, hold).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
     // The second half of the movement gives the scatter about the line: rounding and uneven times.
-    let ramp: Vec<usize> = (half + 1..hold.first)
-        .take_while(|&row| hold.side * angle[row] < MIN_HOLD_ANGLE_SHARE * hold.level.abs())
+    let ramp: Vec<usize> = (half + 1..hold.first_row)
+        .take_while(|&row| hold.side * angle[row] < MIN_HOLD_ANGLE_SHARE * hold.median_angle.abs())
         .collect();
     if ramp.len() < MIN_RAMP_ROWS {
         return 0;
@@ -168,10 +168,10 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f6
 /// First row of the movement into the only hold of a manoeuvre, whose rate no other movement gives; `None` if
 /// the record does not contain the movement.
 fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
-    let laid = hold.first;
+    let laid = hold.first_row;
     let half = half_way(angle, hold)?;
     let rate = (angle[laid] - angle[half]) / (time[laid] - time[half]);
-    let look_back = (0.2 * hold.level.abs()).max(8.0 * noise) / rate.abs();
+    let look_back = (0.2 * hold.median_angle.abs()).max(8.0 * noise) / rate.abs();
     let mut row = half;
     while row > 0 {
         let earlier = row_before(time, row, look_back).min(row - 1);
@@ -183,7 +183,7 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> O
     let clear = row_before(time, row, 0.3 * look_back);
     let before = thinned_median(&angle[clear.saturating_sub(MEDIAN_ROWS)..=clear])?;
     let start = time[half] - (angle[half] - before) / rate;
-    let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
+    let tolerance = (2.5 * noise).max(0.01 * hold.median_angle.abs());
     let first = time.partition_point(|&t| t < start).min(laid);
     Some((first..laid).find(|&row| (angle[row] - before).abs() > tolerance).unwrap_or(laid))
 }
@@ -192,7 +192,7 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> O
 struct ApproachSegment {
     /// First row of the part: before the execute in a steady approach, else the execute.
     first: usize,
-    approach: Approach,
+    approach: ApproachState,
     /// Relative change of speed in the approach; `None` if no speed was recorded.
     speed_change: Option<f64>,
 }
@@ -204,14 +204,14 @@ impl ApproachSegment {
         let speed_change = change(record.log.speed, earliest, start);
         let none = |approach| Self { first: start, approach, speed_change };
         if earliest == start {
-            return none(if start == 0 { Approach::Absent } else { Approach::Unsteady });
+            return none(if start == 0 { ApproachState::Absent } else { ApproachState::Unsteady });
         }
         let is_steady = |change: Option<f64>| change.is_none_or(|change| change.abs() <= MAX_APPROACH_SPEED_CHANGE);
-        if !is_steady(speed_change) || !is_steady(change(record.log.propeller, earliest, start)) {
-            return none(Approach::Unsteady);
+        if !is_steady(speed_change) || !is_steady(change(record.log.propeller_rate, earliest, start)) {
+            return none(ApproachState::Unsteady);
         }
         let Some(rudder_from) = steady_rudder(record, pattern, earliest, start) else {
-            return none(Approach::Unsteady);
+            return none(ApproachState::Unsteady);
         };
         let longest = time[start] - time[rudder_from];
         let rate = pattern.swing / pattern.scale;
@@ -223,17 +223,17 @@ impl ApproachSegment {
             let turned = record.headings.heading_change(time[first], time[start - 1]);
             let limit = STEADY_RATE * rate * duration + STEADY_HEADING * pattern.swing;
             if long && first < start && turned.is_none_or(|turned| turned.abs() <= limit) {
-                return Self { first, approach: Approach::Steady, speed_change };
+                return Self { first, approach: ApproachState::Steady, speed_change };
             }
         }
-        none(Approach::Unsteady)
+        none(ApproachState::Unsteady)
     }
 }
 
 /// First row from which the rudder stays about amidships until row `start`; `None` if it is not amidships there.
 fn steady_rudder(record: &PreparedLog, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
     let (time, angle) = (record.log.time, &record.rudder.angle);
-    let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.level));
+    let (lowest, highest) = extremes(pattern.holds.iter().map(|hold| hold.median_angle));
     let largest = lowest.abs().max(highest.abs());
     let amidships = match pattern.manoeuvre {
         Manoeuvre::TurningCircle { .. } => record.rudder.neutral,

@@ -23,7 +23,7 @@ pub(crate) const MAX_APPROACH_SPEED_CHANGE: f64 = 0.033;
 /// State of the ship in the approach of a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Approach {
+pub enum ApproachState {
     /// Steady course and speed; the part begins with the end of the approach.
     Steady,
     /// Hand steering, a turn or a changing speed; the part begins with the first execute.
@@ -35,21 +35,21 @@ pub enum Approach {
 /// Quality of the part of a log that contains a manoeuvre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Quality {
+pub struct RecordingQuality {
     /// Share of the rows without a heading, 0 to 1.
-    pub missing_headings: f64,
+    pub missing_heading_share: f64,
     /// Maximum gap of the heading, s; `None` without a gap of more than ten usual time steps.
     pub longest_gap: Option<f64>,
     /// Maximum difference between the rudder angles held to a side of a zig-zag, rad; 0 for other manoeuvres.
     pub rudder_spread: f64,
     /// Approach; `None` for a pull-out and a straight piece.
-    pub approach: Option<Approach>,
+    pub approach: Option<ApproachState>,
     /// Change of speed from the first to the last third of the approach (at most a time scale long), as a share of the
     /// larger; positive for an increase; `None` if no speed was recorded.
     pub speed_change: Option<f64>,
 }
 
-impl Quality {
+impl RecordingQuality {
     /// Quality of the rows of a part, without its approach and holds.
     pub(crate) fn from_rows(record: &PreparedLog, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
@@ -60,7 +60,7 @@ impl Quality {
             if psi.is_finite() { read = t } else { missing += 1 }
         }
         Self {
-            missing_headings: f64::from(missing) / time.len() as f64,
+            missing_heading_share: f64::from(missing) / time.len() as f64,
             longest_gap: (longest > GAP_STEPS * record.rudder.step).then_some(longest),
             rudder_spread: 0.0,
             approach: None,
@@ -71,18 +71,18 @@ impl Quality {
     /// Remarks on the quality, one sentence each; empty for a good log.
     pub fn remarks(&self) -> Vec<String> {
         let approach = match self.approach {
-            Some(Approach::Unsteady) => {
+            Some(ApproachState::Unsteady) => {
                 Some("The approach was not steady; the part begins at the first execute.".into())
             }
-            Some(Approach::Absent) => Some("The log begins within the manoeuvre, without an approach.".into()),
-            Some(Approach::Steady) | None => None,
+            Some(ApproachState::Absent) => Some("The log begins within the manoeuvre, without an approach.".into()),
+            Some(ApproachState::Steady) | None => None,
         };
         let speed = self.speed_change.filter(|change| change.abs() > MAX_APPROACH_SPEED_CHANGE).map(|change| {
             let verb = if change > 0.0 { "grew" } else { "fell" };
             format!("The speed {verb} by {:.0} % during the approach.", 100.0 * change.abs())
         });
-        let missing = (self.missing_headings > MAX_MISSING_SHARE)
-            .then(|| format!("{:.0} % of the headings are missing.", 100.0 * self.missing_headings));
+        let missing = (self.missing_heading_share > MAX_MISSING_SHARE)
+            .then(|| format!("{:.0} % of the headings are missing.", 100.0 * self.missing_heading_share));
         let gap = self.longest_gap.map(|gap| format!("The longest gap of the heading is {gap:.1} s."));
         let spread = to_deg(self.rudder_spread);
         let spread = (spread > MAX_SPREAD_DEG)
@@ -98,15 +98,15 @@ pub struct DetectedManoeuvre {
     /// to each side, its heading the median over the executes; `None` if the ship keeps her course.
     pub manoeuvre: Option<Manoeuvre>,
     /// Time of the first row of the part to analyse, s: the first execute, or earlier if the approach was steady.
-    pub from: f64,
+    pub start_time: f64,
     /// Time of the last row of the part, s; the rudder is still held and the propeller turns.
-    pub until: f64,
+    pub end_time: f64,
     /// Time of the first row in which the rudder moves for this manoeuvre, s; for a straight piece its first row.
-    pub first_execute: f64,
-    /// Number of executes up to `until`: 1 for a turning circle or pull-out, 0 for a straight piece.
-    pub executes: usize,
+    pub first_execute_time: f64,
+    /// Number of executes up to `end_time`: 1 for a turning circle or pull-out, 0 for a straight piece.
+    pub execute_count: usize,
     /// Quality of the log in the part.
-    pub quality: Quality,
+    pub quality: RecordingQuality,
 }
 
 impl DetectedManoeuvre {

@@ -27,14 +27,14 @@ use headings::HeadingReadings;
 use pattern::{Pattern, PreparedLog};
 use rudder::{Hold, RudderHolds};
 
-pub use detection::{Approach, DetectedManoeuvre, Quality};
-pub use pattern::Signals;
+pub use detection::{ApproachState, DetectedManoeuvre, RecordingQuality};
+pub use pattern::LogSignals;
 
 /// Manoeuvres of a log in order of time, without overlap.
 ///
-/// Empty if no manoeuvre is recognised, and for a log that violates the rules of [`Signals`]. Time and memory grow
+/// Empty if no manoeuvre is recognised, and for a log that violates the rules of [`LogSignals`]. Time and memory grow
 /// in proportion to the rows.
-pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
+pub fn detect_manoeuvres(log: &LogSignals) -> Vec<DetectedManoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
@@ -44,12 +44,12 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
     let mut patterns = spirals::spirals(&record);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();
     patterns.extend(zigzags::zigzags(&record, &free));
-    patterns.sort_by_key(|pattern| pattern.holds[0].first);
+    patterns.sort_by_key(|pattern| pattern.holds[0].first_row);
     let free = rudder.merged.iter().copied().filter(|hold| !overlaps(&patterns, hold)).collect::<Vec<_>>();
     // A pull-out begins at the end of its turn; another manoeuvre may lie between.
     let turns = turns::turns(&record, &free).into_iter().filter(|turn| !overlaps(&patterns, &turn.holds[0]));
     patterns.extend(turns.collect::<Vec<_>>());
-    patterns.sort_by_key(|pattern| pattern.holds[0].first);
+    patterns.sort_by_key(|pattern| pattern.holds[0].first_row);
     let mut list = bounds::with_bounds(&record, &patterns);
     straights::add_straight_runs(&record, &patterns, &mut list);
     list
@@ -57,6 +57,6 @@ pub fn manoeuvres(log: &Signals) -> Vec<DetectedManoeuvre> {
 
 /// `true` if a hold shares rows with a pattern; the patterns are in order of time and do not overlap.
 fn overlaps(patterns: &[Pattern], hold: &Hold) -> bool {
-    let next = patterns.partition_point(|pattern| pattern.last() < hold.first);
-    patterns.get(next).is_some_and(|pattern| pattern.first() <= hold.last)
+    let next = patterns.partition_point(|pattern| pattern.last() < hold.first_row);
+    patterns.get(next).is_some_and(|pattern| pattern.first() <= hold.last_row)
 }

@@ -8,7 +8,7 @@ use crate::manoeuvre::Manoeuvre;
 ///
 /// All channels have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
-pub struct Signals<'a> {
+pub struct LogSignals<'a> {
     /// Time, s.
     pub time: &'a [f64],
     /// Rudder angle or order, rad; finite in every row.
@@ -18,10 +18,10 @@ pub struct Signals<'a> {
     /// Speed, m/s; `None` if it was not recorded.
     pub speed: Option<&'a [f64]>,
     /// Revolutions of the propeller, in any unit; `None` if they were not recorded.
-    pub propeller: Option<&'a [f64]>,
+    pub propeller_rate: Option<&'a [f64]>,
 }
 
-impl Signals<'_> {
+impl LogSignals<'_> {
     /// `true` if time, rudder and heading are as documented; otherwise no manoeuvre is detected.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();
@@ -36,7 +36,7 @@ impl Signals<'_> {
 /// Log prepared for the search: its channels, the holds of its rudder and its headings.
 #[derive(Clone, Copy)]
 pub(crate) struct PreparedLog<'a> {
-    pub log: &'a Signals<'a>,
+    pub log: &'a LogSignals<'a>,
     pub rudder: &'a RudderHolds,
     pub headings: &'a HeadingReadings,
 }
@@ -56,11 +56,11 @@ pub(crate) struct Pattern {
 impl Pattern {
     /// First row of the first hold.
     pub fn first(&self) -> usize {
-        self.holds[0].first
+        self.holds[0].first_row
     }
 
     /// Last row of the last hold.
     pub fn last(&self) -> usize {
-        self.holds[self.holds.len() - 1].last
+        self.holds[self.holds.len() - 1].last_row
     }
 }

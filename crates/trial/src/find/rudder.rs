@@ -43,27 +43,27 @@ const GAP_STEPS: f64 = 30.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hold {
     /// First row.
-    pub first: usize,
+    pub first_row: usize,
     /// Last row.
-    pub last: usize,
+    pub last_row: usize,
     /// Time of the first row, s.
-    pub from: f64,
+    pub start_time: f64,
     /// Time of the last row, s.
-    pub until: f64,
+    pub end_time: f64,
     /// Median rudder angle, rad.
-    pub level: f64,
+    pub median_angle: f64,
 }
 
 impl Hold {
     /// Time from the first to the last row, s.
     pub fn duration(&self) -> f64 {
-        self.until - self.from
+        self.end_time - self.start_time
     }
 
     /// Union of two holds with the rows between them; with the level of the longer hold.
     pub fn joined(self, later: Self) -> Self {
-        let level = if later.duration() > self.duration() { later.level } else { self.level };
-        Self { last: later.last, until: later.until, level, ..self }
+        let level = if later.duration() > self.duration() { later.median_angle } else { self.median_angle };
+        Self { last_row: later.last_row, end_time: later.end_time, median_angle: level, ..self }
     }
 }
 
@@ -106,7 +106,7 @@ impl RudderHolds {
 
     /// `true` if the rudder of a hold is amidships or neutral.
     pub fn is_amidships(&self, hold: &Hold) -> bool {
-        hold.level.abs().min((hold.level - self.neutral).abs()) < self.floor
+        hold.median_angle.abs().min((hold.median_angle - self.neutral).abs()) < self.floor
     }
 
     /// Holds of the log, cut wherever the rudder leaves the band about the mean of the rows since the last cut.
@@ -173,11 +173,11 @@ impl RudderHolds {
         let begin = (first..=last).find(|&row| early.contains(&self.angle[row]))?;
         let end = (begin..=last).rev().find(|&row| late.contains(&self.angle[row]))?;
         (end + 1 - begin >= MIN_ROWS).then_some(Hold {
-            first: begin,
-            last: end,
-            from: time[begin],
-            until: time[end],
-            level,
+            first_row: begin,
+            last_row: end,
+            start_time: time[begin],
+            end_time: time[end],
+            median_angle: level,
         })
     }
 
@@ -196,9 +196,10 @@ impl RudderHolds {
 fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
     // The end of a movement is also near the level.
-    let size = a.level.abs().max(b.level.abs());
+    let size = a.median_angle.abs().max(b.median_angle.abs());
     let tolerance = if shorter < SHORT_SHARE * longer { 0.5 * floor } else { floor.max(LEVEL_TOLERANCE * size) };
-    (a.level - b.level).abs() <= tolerance && b.from - a.until <= MAX_PAUSE_SHARE * (a.duration() + b.duration())
+    (a.median_angle - b.median_angle).abs() <= tolerance
+        && b.start_time - a.end_time <= MAX_PAUSE_SHARE * (a.duration() + b.duration())
 }
 
 /// Running median of three; the first and last value are unchanged.
@@ -251,9 +252,10 @@ mod tests {
         for sign in [1.0, -1.0] {
             let rudder: Vec<f64> = degrees.iter().map(|x| sign * from_deg(*x)).collect();
             let rudder_holds = RudderHolds::from_signal(&time, &rudder);
-            let holds: Vec<(usize, usize)> = rudder_holds.merged.iter().map(|hold| (hold.first, hold.last)).collect();
+            let holds: Vec<(usize, usize)> =
+                rudder_holds.merged.iter().map(|hold| (hold.first_row, hold.last_row)).collect();
             assert_eq!(holds, rows);
-            assert_eq!(rudder_holds.merged[2].level, -sign * from_deg(20.0));
+            assert_eq!(rudder_holds.merged[2].median_angle, -sign * from_deg(20.0));
         }
     }
 }

@@ -48,15 +48,15 @@ pub(crate) fn spirals(record: &PreparedLog) -> Vec<Pattern> {
     let sweeps: Vec<&[Hold]> = sweeps(&holds).into_iter().filter(|sweep| is_answered(record, sweep)).collect();
     let mut patterns: Vec<Pattern> = Vec::new();
     // Sweeps share the hold at which the rudder reverses.
-    for group in sweeps.chunk_by(|a, b| a[a.len() - 1].first == b[0].first) {
+    for group in sweeps.chunk_by(|a, b| a[a.len() - 1].first_row == b[0].first_row) {
         if !group.iter().any(|sweep| is_from_side_to_side(sweep)) {
             continue;
         }
         let mut holds = group[0].to_vec();
         group[1..].iter().for_each(|sweep| holds.extend(&sweep[1..]));
-        let rudder = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
+        let rudder = holds.iter().map(|hold| hold.median_angle.abs()).fold(0.0, f64::max);
         let scale = finite_median(holds.iter().map(Hold::duration));
-        let turns = holds.iter().filter_map(|hold| record.headings.heading_change(hold.from, hold.until));
+        let turns = holds.iter().filter_map(|hold| record.headings.heading_change(hold.start_time, hold.end_time));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
         patterns.push(Pattern { manoeuvre: Manoeuvre::Spiral { rudder }, holds, scale, swing });
     }
@@ -67,8 +67,8 @@ pub(crate) fn spirals(record: &PreparedLog) -> Vec<Pattern> {
 fn sweeps(holds: &[Hold]) -> Vec<&[Hold]> {
     let step = |index: usize| {
         let (a, b) = (&holds[index], &holds[index + 1]);
-        let step = b.level - a.level;
-        let quick = b.from - a.until <= MAX_MOVEMENT_SHARE * a.duration().min(b.duration());
+        let step = b.median_angle - a.median_angle;
+        let quick = b.start_time - a.end_time <= MAX_MOVEMENT_SHARE * a.duration().min(b.duration());
         if quick && step.abs() >= MIN_STEP { step.signum() } else { 0.0 }
     };
     let mut sweeps = Vec::new();
@@ -88,7 +88,7 @@ fn sweeps(holds: &[Hold]) -> Vec<&[Hold]> {
 }
 
 fn is_from_side_to_side(sweep: &[Hold]) -> bool {
-    let (first, last) = (sweep[0].level, sweep[sweep.len() - 1].level);
+    let (first, last) = (sweep[0].median_angle, sweep[sweep.len() - 1].median_angle);
     let (port, starboard) = (-first.min(last), first.max(last));
     let (smaller, larger) = (port.min(starboard), port.max(starboard));
     sweep.len() >= MIN_HOLDS && smaller >= MIN_AMPLITUDE && larger <= MAX_SIDE_RATIO * smaller
@@ -102,12 +102,12 @@ fn is_answered(record: &PreparedLog, sweep: &[Hold]) -> bool {
     }
     let thirds = |hold: &Hold| {
         let third = hold.duration() / 3.0;
-        let late = hold.until - third;
-        record.headings.mean_rate(late - third, late).zip(record.headings.mean_rate(late, hold.until))
+        let late = hold.end_time - third;
+        record.headings.mean_rate(late - third, late).zip(record.headings.mean_rate(late, hold.end_time))
     };
     let Some(rates) = sweep.iter().map(thirds).collect::<Option<Vec<(f64, f64)>>>() else { return false };
     let (first, last) = (rates[0].1, rates[rates.len() - 1].1);
-    let range = (last - first) * (sweep[sweep.len() - 1].level - sweep[0].level).signum();
+    let range = (last - first) * (sweep[sweep.len() - 1].median_angle - sweep[0].median_angle).signum();
     let sense = (last - first).signum();
     range > 0.0
         && rates.iter().all(|(earlier, later)| (later - earlier).abs() <= MAX_RATE_CHANGE * range)

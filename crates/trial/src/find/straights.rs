@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::detection::{DetectedManoeuvre, Quality};
+use super::detection::{DetectedManoeuvre, RecordingQuality};
 use super::pattern::{Pattern, PreparedLog};
 use super::rudder::finite_median;
 
@@ -33,7 +33,7 @@ pub(crate) fn add_straight_runs(record: &PreparedLog, patterns: &[Pattern], list
     let scale = finite_median(patterns.iter().map(|pattern| pattern.scale));
     let shortest = if scale > 0.0 { MIN_SCALES * scale } else { MIN_DURATION_SHARE * (end - begin) };
     // Recorded speed and revolutions, each with its minimum for a ship under way.
-    let channels = [record.log.speed, record.log.propeller].into_iter().flatten();
+    let channels = [record.log.speed, record.log.propeller_rate].into_iter().flatten();
     let under_way: Vec<(&[f64], f64)> = channels
         .filter(|values| values.len() == time.len())
         .map(|values| (values, AT_REST_SHARE * finite_median(values.iter().map(|x| x.abs()))))
@@ -46,12 +46,12 @@ pub(crate) fn add_straight_runs(record: &PreparedLog, patterns: &[Pattern], list
     let mut pieces = Vec::new();
     let mut first = 0;
     for manoeuvre in list.iter() {
-        pieces.extend(pieces_in(first, time.partition_point(|&t| t < manoeuvre.from)));
-        first = time.partition_point(|&t| t <= manoeuvre.until);
+        pieces.extend(pieces_in(first, time.partition_point(|&t| t < manoeuvre.start_time)));
+        first = time.partition_point(|&t| t <= manoeuvre.end_time);
     }
     pieces.extend(pieces_in(first, time.len()));
     list.extend(pieces);
-    list.sort_by(|a, b| a.from.total_cmp(&b.from));
+    list.sort_by(|a, b| a.start_time.total_cmp(&b.start_time));
 }
 
 /// Straight pieces in a range of rows; `is_straight` tests speed, propeller and rudder of a row, not its heading.
@@ -111,11 +111,11 @@ impl Piece {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
         (until - from >= shortest && self.last + 1 - self.first >= MIN_ROWS).then(|| DetectedManoeuvre {
             manoeuvre: None,
-            from,
-            until,
-            first_execute: from,
-            executes: 0,
-            quality: Quality::from_rows(record, self.first, self.last),
+            start_time: from,
+            end_time: until,
+            first_execute_time: from,
+            execute_count: 0,
+            quality: RecordingQuality::from_rows(record, self.first, self.last),
         })
     }
 }

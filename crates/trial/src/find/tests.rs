@@ -6,7 +6,7 @@ mod ship;
 use ::ship::angle::{from_deg, to_deg};
 
 use self::ship::SimulatedLog;
-use super::{Approach, DetectedManoeuvre, manoeuvres};
+use super::{ApproachState, DetectedManoeuvre, detect_manoeuvres};
 use crate::Manoeuvre;
 
 /// A zig-zag after twelve minutes on a course, followed by a straight course.
@@ -22,8 +22,12 @@ fn half_an_hour(step: f64) -> (SimulatedLog, (f64, f64)) {
 }
 
 fn assert_part(part: &DetectedManoeuvre, (start, until): (f64, f64), step: f64) {
-    assert!((part.first_execute - start).abs() <= 2.001 * step, "starts at {} for {start}", part.first_execute);
-    assert!((part.until - until).abs() <= 2.001 * step, "ends at {} for {until}", part.until);
+    assert!(
+        (part.first_execute_time - start).abs() <= 2.001 * step,
+        "starts at {} for {start}",
+        part.first_execute_time
+    );
+    assert!((part.end_time - until).abs() <= 2.001 * step, "ends at {} for {until}", part.end_time);
 }
 
 #[test]
@@ -33,12 +37,16 @@ fn a_zig_zag_in_half_an_hour_is_found_to_the_row() {
         let detected = log.detected();
         assert_eq!(detected.len(), 1, "{:?}", log.names());
         assert_part(&detected[0], part, step);
-        assert_eq!(detected[0].executes, 12);
+        assert_eq!(detected[0].execute_count, 12);
         let Some(Manoeuvre::ZigZag { rudder, heading, .. }) = detected[0].manoeuvre else { panic!("a zig-zag") };
         assert!((to_deg(rudder) - 10.0).abs() < 0.01, "{}", to_deg(rudder));
         assert!((to_deg(heading) - 10.0).abs() < 0.8, "{}", to_deg(heading));
-        assert_eq!(detected[0].quality.approach, Some(Approach::Steady));
-        assert!(detected[0].from < part.0 - 5.0 && detected[0].from > part.0 - 60.0, "from {}", detected[0].from);
+        assert_eq!(detected[0].quality.approach, Some(ApproachState::Steady));
+        assert!(
+            detected[0].start_time < part.0 - 5.0 && detected[0].start_time > part.0 - 60.0,
+            "from {}",
+            detected[0].start_time
+        );
         assert_eq!(log.names(), ["straight", "zig-zag 10/10", "straight"]);
     }
 }
@@ -53,8 +61,8 @@ fn an_unsteady_approach_is_left_out() {
     }
     let detected = log.detected();
     assert_eq!(detected.len(), 1);
-    assert!((detected[0].from - part.0).abs() < 0.41, "{} for {}", detected[0].from, part.0);
-    assert_eq!(detected[0].quality.approach, Some(Approach::Unsteady));
+    assert!((detected[0].start_time - part.0).abs() < 0.41, "{} for {}", detected[0].start_time, part.0);
+    assert_eq!(detected[0].quality.approach, Some(ApproachState::Unsteady));
     assert!(detected[0].quality.remarks().iter().any(|remark| remark.contains("grew")));
 }
 
@@ -68,7 +76,7 @@ fn the_stop_of_the_propeller_ends_a_part() {
         .iter()
         .for_each(|&row| log.propeller[row] = 0.0);
     let detected = log.detected();
-    assert!((detected[0].until - stop).abs() < 0.41, "{} for {stop}", detected[0].until);
+    assert!((detected[0].end_time - stop).abs() < 0.41, "{} for {stop}", detected[0].end_time);
 }
 
 /// Periods of 20 s at 50 Hz and of 15 minutes at 1 Hz, fast and slow gear.
@@ -86,7 +94,7 @@ fn models_and_tankers() {
             let detected = log.detected();
             assert_eq!(detected.len(), 1, "{step} {factor} {delta_deg}/{psi_deg}: {:?}", log.names());
             assert_part(&detected[0], part, step);
-            assert_eq!(detected[0].executes, 5);
+            assert_eq!(detected[0].execute_count, 5);
             let Some(Manoeuvre::ZigZag { heading, .. }) = detected[0].manoeuvre else { panic!("a zig-zag") };
             let share = to_deg(heading) / psi_deg;
             assert!(share > 0.95 && share < 1.25, "{step} {factor} {delta_deg}/{psi_deg}: {share}");
@@ -113,14 +121,14 @@ fn faults_of_a_rudder_do_not_hide_a_zig_zag() {
         fault(&mut log);
         let detected = log.detected();
         assert_eq!(detected.len(), 1, "{name}: {:?}", log.names());
-        assert_eq!((detected[0].name().as_str(), detected[0].executes), ("zig-zag 10/10", 12), "{name}");
+        assert_eq!((detected[0].name().as_str(), detected[0].execute_count), ("zig-zag 10/10", 12), "{name}");
         assert!(
-            (detected[0].first_execute - part.0).abs() < tolerance,
+            (detected[0].first_execute_time - part.0).abs() < tolerance,
             "{name}: {} for {}",
-            detected[0].first_execute,
+            detected[0].first_execute_time,
             part.0
         );
-        assert!((detected[0].until - part.1).abs() < tolerance, "{name}: {} for {}", detected[0].until, part.1);
+        assert!((detected[0].end_time - part.1).abs() < tolerance, "{name}: {} for {}", detected[0].end_time, part.1);
     }
 }
 
@@ -135,7 +143,7 @@ fn a_neutral_rudder_of_two_degrees() {
     let detected = log.detected();
     assert_eq!(detected.len(), 1, "{:?}", log.names());
     assert_part(&detected[0], part, 0.2);
-    assert_eq!(detected[0].quality.approach, Some(Approach::Steady));
+    assert_eq!(detected[0].quality.approach, Some(ApproachState::Steady));
 }
 
 #[test]
@@ -153,7 +161,7 @@ fn zig_zags_of_two_angles_or_with_a_pause_are_two() {
         assert_eq!(detected.len(), 2, "{second_deg} after {pause} s: {detected:?}");
         assert_part(&detected[0], first, 0.5);
         assert_part(&detected[1], second, 0.5);
-        assert!(detected[1].from > detected[0].until);
+        assert!(detected[1].start_time > detected[0].end_time);
         let names: Vec<String> = detected.iter().map(|manoeuvre| manoeuvre.name()).collect();
         assert_eq!(names, [String::from("zig-zag 10/10"), format!("zig-zag {second_deg:.0}/{second_deg:.0}")]);
     }
@@ -196,15 +204,18 @@ fn all_kinds_are_told_apart() {
         "turning circle 20 to port",
         "straight",
     ];
-    let mut list = manoeuvres(&log.signals());
-    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].first_execute));
+    let mut list = detect_manoeuvres(&log.signals());
+    assert!(
+        list.windows(2)
+            .all(|pair| pair[0].end_time < pair[1].start_time && pair[0].start_time <= pair[0].first_execute_time)
+    );
     // A course that is reached slowly may count as two pieces.
     list.dedup_by(|piece, before| piece.manoeuvre.is_none() && before.manoeuvre.is_none());
     let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, expected);
     let rudder_deg =
         |place: usize| list[place].manoeuvre.as_ref().map(|manoeuvre| to_deg(manoeuvre.max_rudder()).round());
-    assert_eq!((rudder_deg(8), list[8].executes, rudder_deg(4)), (Some(15.0), 13, Some(35.0)));
+    assert_eq!((rudder_deg(8), list[8].execute_count, rudder_deg(4)), (Some(15.0), 13, Some(35.0)));
 }
 
 /// Hours with the rudder at rest, compared with which every hold of a manoeuvre is short.
@@ -236,15 +247,15 @@ fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
 
 /// Parts, without the values whose sign changes.
 fn parts(list: &[DetectedManoeuvre]) -> Vec<(f64, f64, f64, usize)> {
-    list.iter().map(|part| (part.from, part.until, part.first_execute, part.executes)).collect()
+    list.iter().map(|part| (part.start_time, part.end_time, part.first_execute_time, part.execute_count)).collect()
 }
 
 #[test]
 fn mirrored_logs_have_the_same_parts() {
     let mut log = all_kinds(0.5);
-    let list = manoeuvres(&log.signals());
+    let list = detect_manoeuvres(&log.signals());
     log.rudder.iter_mut().chain(&mut log.heading).for_each(|x| *x = -*x);
-    let mirrored = manoeuvres(&log.signals());
+    let mirrored = detect_manoeuvres(&log.signals());
     assert_eq!(parts(&list), parts(&mirrored));
     assert_eq!(mirrored[3].name(), "turning circle 35 to port");
 }
@@ -252,9 +263,9 @@ fn mirrored_logs_have_the_same_parts() {
 #[test]
 fn the_unit_of_time_does_not_matter() {
     let mut log = all_kinds(0.5);
-    let list = manoeuvres(&log.signals());
+    let list = detect_manoeuvres(&log.signals());
     log.time.iter_mut().for_each(|t| *t *= 10.0);
-    let slow = manoeuvres(&log.signals());
+    let slow = detect_manoeuvres(&log.signals());
     assert_eq!(list.len(), slow.len());
     for (a, b) in parts(&list).iter().zip(parts(&slow)) {
         for (a, b) in [(a.0, b.0), (a.1, b.1), (a.2, b.2)] {
@@ -281,7 +292,7 @@ fn a_day_at_ten_hertz() {
         let start = std::time::Instant::now();
         let detected = log.detected();
         println!("{} rows in {:.3} s", log.time.len(), start.elapsed().as_secs_f64());
-        let executes: Vec<usize> = detected.iter().map(|manoeuvre| manoeuvre.executes).collect();
+        let executes: Vec<usize> = detected.iter().map(|manoeuvre| manoeuvre.execute_count).collect();
         // In noise one of very many holds may be split into two.
         let expected = [6, 6, 1].repeat(11);
         let others = executes.iter().zip(&expected).filter(|(executes, expected)| executes != expected).count();

@@ -38,8 +38,9 @@ pub(crate) fn turns(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
         let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
         if turned.abs() >= MIN_CIRCLE {
-            let (side, heading_change) = (Side::from_angle(hold.level), Some(turned.abs()));
-            let manoeuvre = Manoeuvre::TurningCircle { rudder: hold.level.abs(), side, duration: None, heading_change };
+            let (side, heading_change) = (Side::from_angle(hold.median_angle), Some(turned.abs()));
+            let manoeuvre =
+                Manoeuvre::TurningCircle { rudder: hold.median_angle.abs(), side, duration: None, heading_change };
             patterns.push(Pattern { manoeuvre, holds: vec![*hold], scale: MIN_TURN / rate, swing: MIN_TURN });
         }
         patterns.extend(pull_out(record, hold, &holds[index + 1..]));
@@ -49,35 +50,37 @@ pub(crate) fn turns(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
 
 /// Change of heading in a turn, rad; `None` for a hold without a turn.
 fn turned(record: &PreparedLog, hold: &Hold) -> Option<f64> {
-    let rudder = hold.level - record.rudder.neutral;
-    let is_over = hold.level.abs() >= MIN_RUDDER && rudder.abs() >= MIN_RUDDER;
-    let turned = record.headings.heading_change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
+    let rudder = hold.median_angle - record.rudder.neutral;
+    let is_over = hold.median_angle.abs() >= MIN_RUDDER && rudder.abs() >= MIN_RUDDER;
+    let turned =
+        record.headings.heading_change(hold.start_time, hold.end_time).filter(|_| is_over && is_whole(record, hold))?;
     (turned * rudder.signum() >= MIN_TURN).then_some(turned)
 }
 
 /// `true` if a hold has no gap in which the rudder may have moved.
 fn is_whole(record: &PreparedLog, hold: &Hold) -> bool {
-    let rows = &record.log.time[hold.first..=hold.last];
+    let rows = &record.log.time[hold.first_row..=hold.last_row];
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
 }
 
 /// Pull-out after a turn: the rudder amidships until the yaw rate is steady or the rudder moves. `None` if the rudder
 /// is not put amidships soon or long enough, or if headings are missing.
 fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
-    let end_of_turn = turn.until - 0.25 * turn.duration();
-    let rate = record.headings.mean_rate(end_of_turn, turn.until)?.abs();
+    let end_of_turn = turn.end_time - 0.25 * turn.duration();
+    let rate = record.headings.mean_rate(end_of_turn, turn.end_time)?.abs();
     let time = PULL_OUT_TURN / rate;
-    let soon = |hold: &&Hold| hold.from - turn.until <= time.max(0.25 * turn.duration());
+    let soon = |hold: &&Hold| hold.start_time - turn.end_time <= time.max(0.25 * turn.duration());
     // Between two turns the rudder is not amidships.
     let mut reach = next.iter().take_while(soon).take_while(|hold| turned(record, hold).is_none());
     let amidships = reach.find(|hold| hold.duration() >= MIN_SCALES * time)?;
     let neutral = record.rudder.neutral;
-    let off = (amidships.level - neutral).abs();
-    let is_amidships = off <= MAX_AMIDSHIPS_SHARE * (turn.level - neutral).abs() && off < MIN_RUDDER;
+    let off = (amidships.median_angle - neutral).abs();
+    let is_amidships = off <= MAX_AMIDSHIPS_SHARE * (turn.median_angle - neutral).abs() && off < MIN_RUDDER;
     if !is_amidships || !is_whole(record, amidships) {
         return None;
     }
-    let rate_in = |k: f64| record.headings.mean_rate(amidships.from + k * time, amidships.from + (k + 1.0) * time);
+    let rate_in =
+        |k: f64| record.headings.mean_rate(amidships.start_time + k * time, amidships.start_time + (k + 1.0) * time);
     let mut pieces = 1.0;
     while (pieces + 1.0) * time <= amidships.duration() {
         let change = rate_in(pieces)? - rate_in(pieces - 1.0)?;
@@ -86,17 +89,28 @@ fn pull_out(record: &PreparedLog, turn: &Hold, next: &[Hold]) -> Option<Pattern>
             break;
         }
     }
-    let settled = amidships.from + pieces * time;
+    let settled = amidships.start_time + pieces * time;
     let last = if (pieces + 1.0) * time > amidships.duration() {
-        amidships.last
+        amidships.last_row
     } else {
-        record.log.time.partition_point(|&t| t <= settled).saturating_sub(1).clamp(amidships.first, amidships.last)
+        record
+            .log
+            .time
+            .partition_point(|&t| t <= settled)
+            .saturating_sub(1)
+            .clamp(amidships.first_row, amidships.last_row)
     };
     // The rudder moves from the row after the turn on.
-    let first = (turn.last + 1).min(amidships.first);
+    let first = (turn.last_row + 1).min(amidships.first_row);
     let [from, until] = [first, last].map(|row| record.log.time[row]);
-    let hold = Hold { first, last, from, until, level: amidships.level };
-    let (rudder, side) = (turn.level.abs(), Side::from_angle(turn.level));
+    let hold = Hold {
+        first_row: first,
+        last_row: last,
+        start_time: from,
+        end_time: until,
+        median_angle: amidships.median_angle,
+    };
+    let (rudder, side) = (turn.median_angle.abs(), Side::from_angle(turn.median_angle));
     let manoeuvre = Manoeuvre::PullOut { rudder, side, hold: turn.duration(), duration: until - from };
     Some(Pattern { manoeuvre, holds: vec![hold], scale: time, swing: PULL_OUT_TURN })
 }

@@ -84,7 +84,8 @@ pub(crate) fn zigzags(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
         }
         let chain = Chain::from(start, holds, record.rudder.neutral);
         patterns.extend(answered(record, &chain.holds));
-        let ends = patterns.last().is_some_and(|pattern| pattern.last() >= holds[chain.next.min(holds.len() - 1)].last);
+        let ends =
+            patterns.last().is_some_and(|pattern| pattern.last() >= holds[chain.next.min(holds.len() - 1)].last_row);
         start = chain.next + usize::from(ends);
     }
     patterns
@@ -104,27 +105,28 @@ impl Chain {
         for (index, &hold) in all.iter().enumerate().skip(start + 1) {
             let count = holds.len();
             let last = holds[count - 1];
-            let (gap, pause) = (hold.from - last.until, PAUSE_SHARE * last.duration());
+            let (gap, pause) = (hold.start_time - last.end_time, PAUSE_SHARE * last.duration());
             let (shorter, longer) = (last.duration().min(hold.duration()), last.duration().max(hold.duration()));
-            let same_side = count.checked_sub(2).map(|index| holds[index].level);
-            if is_opposed(last.level, hold.level, neutral)
+            let same_side = count.checked_sub(2).map(|index| holds[index].median_angle);
+            if is_opposed(last.median_angle, hold.median_angle, neutral)
                 && gap <= MAX_MOVEMENT_SHARE * longer
-                && same_side.is_none_or(|level| is_level(level, hold.level))
+                && same_side.is_none_or(|level| is_level(level, hold.median_angle))
             {
                 holds.push(hold);
                 next = index;
-            } else if is_level(last.level, hold.level) && gap <= 0.5 * shorter && hold.duration() >= pause {
+            } else if is_level(last.median_angle, hold.median_angle) && gap <= 0.5 * shorter && hold.duration() >= pause
+            {
                 holds[count - 1] = last.joined(hold);
                 next = index;
-            } else if last.level * hold.level > 0.0
+            } else if last.median_angle * hold.median_angle > 0.0
                 && last.duration() < PAUSE_SHARE * hold.duration()
                 && gap <= MAX_MOVEMENT_SHARE * hold.duration()
-                && count.checked_sub(3).is_none_or(|same| is_level(holds[same].level, hold.level))
+                && count.checked_sub(3).is_none_or(|same| is_level(holds[same].median_angle, hold.median_angle))
             {
                 // The rudder paused on its way to this hold.
                 holds[count - 1] = hold;
                 next = index;
-            } else if hold.duration() < pause && hold.until - last.until <= MAX_PAUSE_REACH * last.duration() {
+            } else if hold.duration() < pause && hold.end_time - last.end_time <= MAX_PAUSE_REACH * last.duration() {
                 continue;
             } else {
                 break;
@@ -191,13 +193,13 @@ fn answered(record: &PreparedLog, holds: &[Hold]) -> Vec<Pattern> {
 /// +1 if a hold is to starboard of its neighbour, else −1.
 fn side(holds: &[Hold], index: usize) -> f64 {
     let neighbour = if index > 0 { index - 1 } else { index + 1 };
-    (holds[index].level - holds[neighbour].level).signum()
+    (holds[index].median_angle - holds[neighbour].median_angle).signum()
 }
 
 /// Heading at the end of a hold, between its last row and the next, rad; `None` if headings are missing there.
 fn heading_at_end(record: &PreparedLog, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
-    record.headings.heading_near(hold.until + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
+    record.headings.heading_near(hold.end_time + 0.5 * record.rudder.step, 0.02 * scale, 0.5 * scale)
 }
 
 /// Zig-zag of holds whose swings agree, with the headings at their ends; `None` if the holds are not a zig-zag.
@@ -213,12 +215,12 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
     if let (Some(began), Some(ended)) = (began, headings[0]) {
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == MIN_HOLDS { ONLY_SWING } else { FIRST_SWING };
-        let at_start = holds[0].first == 0;
+        let at_start = holds[0].first_row == 0;
         let manoeuvring = holds.len() == MIN_HOLDS && !is_straight_before(record, holds, execute, began, swing);
         first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
-    let turned = record.headings.heading_change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
+    let turned = record.headings.heading_change(holds[last].start_time, holds[last].end_time).unwrap_or(0.0).abs();
     if turned > MAX_LAST_SWINGS * swing {
         last -= 1;
     }
@@ -227,11 +229,11 @@ fn pattern(record: &PreparedLog, holds: &[Hold], headings: &[Option<f64>]) -> Op
         return None;
     }
     // Half the difference of the sides, which is independent of a neutral rudder off zero.
-    let level = |first: usize| finite_median(holds.iter().skip(first).step_by(2).map(|hold| hold.level));
+    let level = |first: usize| finite_median(holds.iter().skip(first).step_by(2).map(|hold| hold.median_angle));
     let rudder = 0.5 * (level(0) - level(1)).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
-    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).with_first_side(Side::from_angle(holds[0].level));
+    let manoeuvre = Manoeuvre::zig_zag(rudder, heading).with_first_side(Side::from_angle(holds[0].median_angle));
     let scale = finite_median(holds[..holds.len() - 1].iter().map(Hold::duration));
     (clear && rudder >= MIN_RUDDER && (MIN_HEADING..=MAX_HEADING).contains(&heading)).then(|| Pattern {
         manoeuvre,
@@ -250,7 +252,7 @@ fn is_straight_before(record: &PreparedLog, holds: &[Hold], from: f64, began: f6
     }
     let time = APPROACH_SHARE * holds[0].duration();
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
-    let [a, b] = [holds[0].level, holds[1].level];
+    let [a, b] = [holds[0].median_angle, holds[1].median_angle];
     let rudder = thinned_median(&record.rudder.angle[rows[0]..rows[1]]);
     let heading = record.headings.heading_near(from - time, 0.1 * time, 0.5 * time);
     rudder.is_none_or(|rudder| (rudder - 0.5 * (a + b)).abs() <= MAX_AMIDSHIPS_SHARE * 0.5 * (a - b).abs())
@@ -262,8 +264,9 @@ fn is_held(record: &PreparedLog, holds: &[Hold]) -> bool {
     let held: f64 = holds.iter().map(Hold::duration).sum();
     let (first, last) = (holds[0], holds[holds.len() - 1]);
     let mean = held / holds.len() as f64;
-    let rows = &record.log.time[first.first..=last.last];
-    held >= MIN_HELD_SHARE * (last.until - first.from) && rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.5 * mean)
+    let rows = &record.log.time[first.first_row..=last.last_row];
+    held >= MIN_HELD_SHARE * (last.end_time - first.start_time)
+        && rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.5 * mean)
 }
 
 /// Median change of heading from the base course to the reversals, rad; the base course is midway between the sides.

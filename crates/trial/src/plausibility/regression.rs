@@ -66,8 +66,9 @@ pub(crate) fn steady_turn_gain(trial: &Trial) -> Option<PartialSlope> {
 
 /// Slope of the heading on the integral of the yaw rate: 1 if both agree in unit and sign.
 ///
-/// ψ = c₀ + c₁ t + s ∫r; c₁ absorbs a bias of the rate. `None` as in `first_order_gain`, or without a recorded yaw
-/// rate.
+/// ψ = c₀ + c₁ t + s ∫r, over the rows with both; c₁ absorbs a bias of the rate. `None` without a recorded yaw rate,
+/// with headings integrated from it, for at most four rows, if c₀ + c₁ t explains ψ or ∫r fully, and if numbers
+/// overflow.
 pub(super) fn heading_on_yaw_rate(trial: &Trial) -> Option<PartialSlope> {
     if trial.is_heading_integrated() {
         return None;

@@ -214,7 +214,8 @@ mod tests {
             channels.insert(Channel::RudderOrder, time.iter().map(|&t| from_deg(order(t))).collect());
         }
         let origin = RecordOrigin::Measured { file: String::new(), sha256: String::new() };
-        let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() }).expect("columns");
+        let trial =
+            Trial::new("run", origin, Columns { time, channels, unknown_columns: Vec::new() }).expect("columns");
         rudder_movements(&trial).map(|warning| warning.text).collect::<Vec<_>>().join("; ")
     }
 

@@ -52,7 +52,7 @@ fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
 
 fn verdict(columns: Columns) -> Result<Vec<Warning>, Implausibility> {
     let origin = RecordOrigin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
-    let checked = check(&Trial::new("record", origin, columns).expect("the columns make a record"));
+    let checked = check_plausibility(&Trial::new("record", origin, columns).expect("the columns make a record"));
     // The rudder of these records has no steering gear, and each gives a warning of that.
     checked
         .map(|warnings| warnings.into_iter().filter(|warning| !warning.text.contains("looks like the order")).collect())

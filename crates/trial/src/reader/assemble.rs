@@ -5,7 +5,7 @@
 
 use document::{Warning, WarningCode};
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::source::Series;
 use crate::channel::Channel;
 use crate::cleaning::interpolate_rows;
@@ -32,7 +32,7 @@ pub(super) fn merge_series(series: &[Series]) -> Columns {
     time.sort_unstable_by(f64::total_cmp);
     time.dedup_by(|later, earlier| *later - *earlier < TIME_TOLERANCE);
     let channels = series.iter().map(|series| (series.channel, at_rows(series, &time))).collect();
-    Columns { time, channels, unknown: Vec::new() }
+    Columns { time, channels, unknown_columns: Vec::new() }
 }
 
 /// Values of a channel at the rows: its readings, and those of a model input also interpolated between them.
@@ -152,7 +152,7 @@ pub(super) fn interpolate_rudder(columns: &mut Columns) -> Option<Warning> {
 }
 
 /// Refuses channels without rudder or heading, and channels whose readings do not overlap in time.
-pub(super) fn check_channels(columns: &Columns) -> Result<(), Problem> {
+pub(super) fn check_channels(columns: &Columns) -> Result<(), ReadProblem> {
     let Columns { time, channels, .. } = columns;
     let find = |wanted: [Channel; 2]| wanted.into_iter().find_map(|channel| channels.get(&channel));
     let rudder = find([Channel::Rudder, Channel::RudderOrder]);
@@ -160,7 +160,7 @@ pub(super) fn check_channels(columns: &Columns) -> Result<(), Problem> {
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
         let channels = channels.keys().map(|&channel| channel.label().to_owned()).collect();
-        return Err(Problem::NoChannel { wanted, channels });
+        return Err(ReadProblem::NoChannel { wanted, channels });
     };
     let span = |values: &[f64]| {
         let first = values.iter().position(|value| value.is_finite())?;
@@ -169,7 +169,7 @@ pub(super) fn check_channels(columns: &Columns) -> Result<(), Problem> {
     };
     match (span(rudder), span(heading)) {
         (Some(rudder_s), Some(heading_s)) if rudder_s[0] > heading_s[1] || heading_s[0] > rudder_s[1] => {
-            Err(Problem::NoOverlap { rudder_s, heading_s })
+            Err(ReadProblem::NoOverlap { rudder_s, heading_s })
         }
         _ => Ok(()),
     }

@@ -4,29 +4,29 @@
 use document::{Warning, WarningCode};
 use ship::Particulars;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::log::ReadRecord;
-use super::source::Log;
+use super::source::InstrumentLog;
 use crate::channel::Channel;
-use crate::find::{self, DetectedManoeuvre, Signals};
+use crate::find::{self, DetectedManoeuvre, LogSignals};
 use crate::manoeuvre::Manoeuvre;
 
 /// Maximum share of time outside the zig-zag of a record used as a whole; a larger share is a run-up, a stop, the way
 /// back to the course or another manoeuvre, and is cut.
 const MAX_SURPLUS_SHARE: f64 = 0.02;
 
-impl Log {
+impl InstrumentLog {
     /// Manoeuvres of the log, in order of time; empty without a heading.
-    pub fn manoeuvres(&self) -> Vec<DetectedManoeuvre> {
+    pub fn detected_manoeuvres(&self) -> Vec<DetectedManoeuvre> {
         let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
             return Vec::new();
         };
-        find::manoeuvres(&Signals {
+        find::detect_manoeuvres(&LogSignals {
             time: self.time(),
             rudder,
             heading,
             speed: self.channel(Channel::Speed),
-            propeller: self.channel(Channel::PropellerRate),
+            propeller_rate: self.channel(Channel::PropellerRate),
         })
     }
 
@@ -46,13 +46,13 @@ impl Log {
         if number.is_none() && self.has_declared_interval() {
             return Ok(self);
         }
-        let manoeuvres = self.manoeuvres();
+        let manoeuvres = self.detected_manoeuvres();
         let file = self.path.display().to_string();
         let manoeuvre = match number {
             Some(number) => number
                 .checked_sub(1)
                 .and_then(|place| manoeuvres.get(place))
-                .ok_or_else(|| self.fault(Problem::NoManoeuvre { file, number, count: manoeuvres.len() }))?,
+                .ok_or_else(|| self.fault(ReadProblem::NoManoeuvre { file, number, count: manoeuvres.len() }))?,
             None => match zig_zags(&manoeuvres)[..] {
                 [] => {
                     self.warnings.extend(unrecognised(&manoeuvres, &file));
@@ -61,15 +61,15 @@ impl Log {
                 [(_, only)] => only,
                 ref several => {
                     let line = |(number, zig_zag): &(usize, &DetectedManoeuvre)| {
-                        let [from, until] = [zig_zag.from, zig_zag.until].map(|time| self.shown(time));
+                        let [from, until] = [zig_zag.start_time, zig_zag.end_time].map(|time| self.shown(time));
                         format!("\n  --trial {number}: {}, {from} to {until}", zig_zag.name())
                     };
                     let (count, lines) = (several.len(), several.iter().map(line).collect());
-                    return Err(self.fault(Problem::SeveralZigZags { count, lines }));
+                    return Err(self.fault(ReadProblem::SeveralZigZags { count, lines }));
                 }
             },
         };
-        let (from, until, time) = (manoeuvre.from, manoeuvre.until, self.time());
+        let (from, until, time) = (manoeuvre.start_time, manoeuvre.end_time, self.time());
         let surplus = (from - time[0]) + (time[time.len() - 1] - until);
         if number.is_none() && surplus <= MAX_SURPLUS_SHARE * (until - from) {
             return Ok(self);

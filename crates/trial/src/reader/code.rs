@@ -2,7 +2,7 @@
 
 use document::ErrorCode;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use crate::file::FileError;
 use crate::plausibility::Implausibility;
 use crate::record::TrialError;
@@ -17,7 +17,7 @@ impl ReadError {
     }
 }
 
-impl Problem {
+impl ReadProblem {
     /// Machine-readable code of the problem.
     pub fn code(&self) -> ErrorCode {
         match self {

@@ -4,7 +4,7 @@
 use document::{Warning, WarningCode};
 use ship::angle::DEGREE;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::layout::{ColumnContent, RawColumn};
 use super::units::{POSIX_TIME_RANGE_S, ZIG_ZAG_RANGE_RATIO};
 use crate::channel::Channel;
@@ -15,7 +15,7 @@ use crate::wording::shortened;
 /// Maximum angle of a rudder, deg: few exceed 45°.
 const MAX_RUDDER_DEG: f64 = 46.0;
 
-/// Step of a heading in tenths of a degree at north, as a number in the file.
+/// Range of the jump of a heading at north, in tenths of a degree: 360° less the turn between two rows.
 const TENTHS_WRAP: std::ops::RangeInclusive<f64> = 3400.0..=3600.0;
 
 /// Minimum ratio of the range of a heading in tenths of a degree to the range of its rudder in degrees.
@@ -33,7 +33,7 @@ enum Numbers {
 }
 
 /// Refuses rudder and heading whose numbers are not angles in the unit of their columns.
-pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Problem> {
+pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), ReadProblem> {
     let column_of = |channel: Channel| {
         // Radians and columns with a scale in the sidecar are not checked.
         let is_in_degrees = |factor: f64| (factor.abs() - DEGREE).abs() < 1e-12;
@@ -48,10 +48,10 @@ pub(super) fn check_angles(columns: &[RawColumn], line: usize) -> Result<(), Pro
         let (column, largest) = (column.name.clone(), column.largest);
         Err(match numbers {
             Numbers::PartsOfDegree(parts) => {
-                Problem::PartsOfDegree { line, column, quantity, largest, parts, scale: 1.0 / parts }
+                ReadProblem::PartsOfDegree { line, column, quantity, largest, parts, scale: 1.0 / parts }
             }
-            Numbers::ConverterCounts(zero) => Problem::ConverterCounts { line, column, quantity, low, high, zero },
-            Numbers::ImpossibleAngle => Problem::ImpossibleAngle { line, column, quantity, largest },
+            Numbers::ConverterCounts(zero) => ReadProblem::ConverterCounts { line, column, quantity, low, high, zero },
+            Numbers::ImpossibleAngle => ReadProblem::ImpossibleAngle { line, column, quantity, largest },
         })
     };
     let rudder = column_of(Channel::Rudder).or_else(|| column_of(Channel::RudderOrder));
@@ -137,12 +137,12 @@ pub(super) fn apply_side_column(columns: &mut [RawColumn]) -> Option<Warning> {
 }
 
 /// Refuses a time in seconds whose first value is a present date in milliseconds or microseconds since 1970.
-pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), Problem> {
+pub(super) fn check_time(column: &str, first: f64, line: usize) -> Result<(), ReadProblem> {
     let unit = [(1e-3, "ms"), (1e-6, "us")]
         .into_iter()
         .find(|(factor, _)| (POSIX_TIME_RANGE_S[0]..POSIX_TIME_RANGE_S[1]).contains(&(first * factor)));
     match unit {
-        Some((_, unit)) => Err(Problem::EpochUnit { line, column: column.to_owned(), first, unit }),
+        Some((_, unit)) => Err(ReadProblem::EpochUnit { line, column: column.to_owned(), first, unit }),
         None => Ok(()),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::head;
 use super::input::{self, FileContent};
 use super::limits::is_comment;
@@ -10,7 +10,7 @@ use super::lines::Lines;
 use crate::cells::{CellContent, Separator, parse_cell};
 use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
-use crate::names::{ColumnMeaning, column_meaning, quantity_unit_meaning, with_unit};
+use crate::names::{ColumnMeaning, column_meaning, meaning_with_unit, quantity_unit_meaning};
 use crate::sidecar::Sidecar;
 use crate::wording::shortened;
 
@@ -25,13 +25,13 @@ pub fn draft_sidecar(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let open = || match input::open(path).map_err(fault)? {
         (FileContent::Table(table), _) => Ok(table),
-        (FileContent::Sentences(_) | FileContent::Messages(..), _) => Err(fault(Problem::NeedsNoSidecar)),
+        (FileContent::Sentences(_) | FileContent::Messages(..), _) => Err(fault(ReadProblem::NeedsNoSidecar)),
     };
     let table = open()?;
     let declared = table.is_generated.then_some(Separator::Tab);
     let mut lines = Lines::new(table.bytes, Encoding::Utf8);
     let head = match head::find(&mut lines, declared, &Sidecar::default()) {
-        Err(Problem::NoHeader { .. }) => {
+        Err(ReadProblem::NoHeader { .. }) => {
             lines = Lines::new(open()?.bytes, Encoding::Utf8);
             None
         }
@@ -59,7 +59,8 @@ pub fn draft_sidecar(path: &Path) -> Result<String, ReadError> {
         return Ok(text + END);
     };
     for (index, name) in head.names.iter().enumerate() {
-        let meaning = column_meaning(name).map(|m| head.unit(index).and_then(|unit| with_unit(m, unit)).unwrap_or(m));
+        let meaning =
+            column_meaning(name).map(|m| head.unit(index).and_then(|unit| meaning_with_unit(m, unit)).unwrap_or(m));
         let quoted = toml::Value::from(name.as_str());
         let (remark, is) = description(name, &quoted.to_string(), meaning);
         text.push_str(&format!("\n# {}\n# {remark}\n", summary(&texts, index, separator)));

@@ -18,21 +18,21 @@ use crate::wording::{interval_end, listed, rounded_to_thousandth};
 pub enum ReadError {
     /// Fault of the file itself.
     #[error("{}: {problem}", file.display())]
-    Table { file: PathBuf, problem: Problem },
+    Table { file: PathBuf, problem: ReadProblem },
     /// Fault of the sidecar of the file.
     #[error(transparent)]
     Sidecar(#[from] SidecarError),
 }
 
 impl ReadError {
-    pub(crate) fn table(file: &Path, problem: Problem) -> Self {
+    pub(crate) fn table(file: &Path, problem: ReadProblem) -> Self {
         ReadError::Table { file: file.to_path_buf(), problem }
     }
 
     /// Message without content of the file, for readers other than the user who named it.
     pub fn without_content(&self) -> String {
         match self {
-            Self::Table { problem: Problem::File(_), .. } => self.to_string(),
+            Self::Table { problem: ReadProblem::File(_), .. } => self.to_string(),
             Self::Table { file, .. } => format!("{}: this file is not a usable record", file.display()),
             Self::Sidecar(SidecarError { file, .. }) => {
                 format!("{}: this sidecar cannot be used", file.display())
@@ -49,7 +49,7 @@ fn angle_key_text(quantity: &str) -> String {
 /// Problem of a table or a log. Lines count from 1 as in editors.
 #[derive(Debug, Error)]
 #[expect(missing_docs, reason = "the message of a variant says what its fields are")]
-pub enum Problem {
+pub enum ReadProblem {
     /// The file cannot be opened or read.
     #[error(transparent)]
     File(#[from] FileError),

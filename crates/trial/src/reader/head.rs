@@ -3,7 +3,7 @@
 
 use std::io::Read;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::limits::{is_comment, no_rows_problem};
 use super::lines::Lines;
 use crate::cells::{CellContent, Separator, detect_separator, parse_cell, unquoted};
@@ -51,21 +51,21 @@ impl Head {
 }
 
 /// First nonempty lines below the first `skipped`, at most [`HEAD_LINES`], and the last comment above them.
-fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedLine>, NumberedLine), Problem> {
-    while lines.number() < skipped && lines.skip()? {}
+fn begin<R: Read>(lines: &mut Lines<R>, skipped: usize) -> Result<(Vec<NumberedLine>, NumberedLine), ReadProblem> {
+    while lines.line_number() < skipped && lines.skip()? {}
     let (mut begin, mut comment) = (Vec::new(), NumberedLine::default());
     while begin.len() < HEAD_LINES
-        && lines.number() >= skipped
+        && lines.line_number() >= skipped
         && let Some(text) = lines.next_line()?.map(str::to_owned)
     {
         if is_comment(&text) && begin.is_empty() {
-            comment = (lines.number(), text.trim_start_matches([' ', '#']).to_owned());
+            comment = (lines.line_number(), text.trim_start_matches([' ', '#']).to_owned());
         } else if !is_comment(&text) && !text.trim().is_empty() {
-            begin.push((lines.number(), text));
+            begin.push((lines.line_number(), text));
         }
     }
-    match lines.number() {
-        0 => Err(Problem::Empty),
+    match lines.line_number() {
+        0 => Err(ReadProblem::Empty),
         last if begin.is_empty() => Err(no_rows_problem(last)),
         _ => Ok((begin, comment)),
     }
@@ -78,7 +78,7 @@ pub(super) fn find<R: Read>(
     lines: &mut Lines<R>,
     declared: Option<Separator>,
     sidecar: &Sidecar,
-) -> Result<Head, Problem> {
+) -> Result<Head, ReadProblem> {
     let skipped = sidecar.table.skip_lines;
     let (mut begin, (comment_line, comment)) = begin(lines, skipped)?;
     let (line, text) = &begin[0];
@@ -99,7 +99,7 @@ pub(super) fn find<R: Read>(
         // The rows begin in the first line. Some programs write the names in the comment above.
         let name_separator = separator_of(&comment);
         if !has_names(&comment, name_separator) {
-            return Err(Problem::NoHeader { line: *line, text: shortened(text) });
+            return Err(ReadProblem::NoHeader { line: *line, text: shortened(text) });
         }
         (without_units(comment_line, names_of(&comment, name_separator), declared.unwrap_or(separator)), 0)
     } else {

@@ -6,7 +6,7 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 use super::columnar::BinaryFormat;
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::limits::RECORD_FILE;
 use super::lines::{HashingReader, RunningHash};
 use super::messages::{self, MessageFormat};
@@ -38,7 +38,7 @@ pub(super) enum FileContent<'a> {
     Messages(Text<'a>, MessageFormat),
 }
 
-impl Problem {
+impl ReadProblem {
     /// Problem of an input error; a problem that a decoder wrapped in the error is unwrapped.
     pub(super) fn from_input(error: io::Error) -> Self {
         error.downcast::<Self>().unwrap_or_else(|error| FileError::from(error).into())
@@ -54,7 +54,7 @@ pub(super) fn stem(path: &Path) -> String {
 
 /// Opens a file and recognises its content. The size (bytes) is `None` for a pipe, and if the text has another length
 /// than the file. Fails as [`file::open`] and [`detect_content`] do.
-pub(super) fn open(path: &Path) -> Result<(FileContent<'static>, Option<u64>), Problem> {
+pub(super) fn open(path: &Path) -> Result<(FileContent<'static>, Option<u64>), ReadProblem> {
     let file = file::open(path, RECORD_FILE)?;
     let (size, content) = (file.size, detect_content(Box::new(file))?);
     let (FileContent::Table(text) | FileContent::Sentences(text) | FileContent::Messages(text, _)) = &content;
@@ -63,7 +63,7 @@ pub(super) fn open(path: &Path) -> Result<(FileContent<'static>, Option<u64>), P
 }
 
 /// First bytes of an input, and all its bytes.
-fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a>), Problem> {
+fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a>), ReadProblem> {
     let mut first = Vec::new();
     (&mut input).take(HEAD_BYTES).read_to_end(&mut first).map_err(FileError::from)?;
     Ok((first.clone(), Box::new(Cursor::new(first).chain(input))))
@@ -72,7 +72,7 @@ fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a
 /// Recognises the content of a file.
 ///
 /// Fails for formats that are recognised but not read, and for damaged compressed data.
-pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<FileContent<'a>, Problem> {
+pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<FileContent<'a>, ReadProblem> {
     let (mut first, mut bytes) = peek(input)?;
     let mut file_hash = None;
     if first.starts_with(&[0x1f, 0x8b]) {
@@ -81,7 +81,7 @@ pub(super) fn detect_content<'a>(input: Box<dyn Read + 'a>) -> Result<FileConten
         let unpacked = LimitedReader::new(Box::new(MultiGzDecoder::new(hashed)), RECORD_FILE, None);
         (first, bytes) = peek(Box::new(unpacked))?;
     }
-    let refused = |format, cure| Err(Problem::Format { format, cure });
+    let refused = |format, cure| Err(ReadProblem::Format { format, cure });
     const AS_CSV: &str = "export it as CSV";
     const MATLAB_7_3: &str = "an HDF5 file (MATLAB 7.3 writes these)";
     const AS_LEVEL_5: &str = "save it with the option `-v7`, or export it as CSV";

@@ -3,7 +3,7 @@
 
 use ship::Polyline;
 
-use super::source::{ChannelReadings, Log};
+use super::source::{ChannelReadings, InstrumentLog};
 use crate::channel::Channel;
 use crate::plausibility::range;
 use crate::plausibility::regression::{first_order_gain, partial_slope, steady_turn_gain, thinned};
@@ -27,9 +27,9 @@ pub struct ChannelRelation {
     /// Reference channel.
     pub reference: Channel,
     /// Factor from the channel to the reference; negative for opposite signs.
-    pub scale: f64,
+    pub factor_to_reference: f64,
     /// Lag behind the reference, s; `None` if the best lag is at the end of the range.
-    pub lag: Option<f64>,
+    pub lag_behind_reference: Option<f64>,
 }
 
 /// Inspection of a channel of a log.
@@ -44,7 +44,7 @@ pub struct ChannelInspection {
     pub relation: Option<ChannelRelation>,
 }
 
-impl Log {
+impl InstrumentLog {
     /// Inspection of every channel that was read; signs and scales come from linear regressions on integrals.
     pub fn inspect(&self) -> Vec<ChannelInspection> {
         let steered = self.turns_with_rudder();
@@ -54,9 +54,9 @@ impl Log {
             let (to_starboard, relation) = match readings.channel {
                 Channel::Rudder => (steered, rudder),
                 Channel::RudderOrder => {
-                    (steered.zip(rudder).map(|(side, relation)| side == (relation.scale > 0.0)), None)
+                    (steered.zip(rudder).map(|(side, relation)| side == (relation.factor_to_reference > 0.0)), None)
                 }
-                Channel::YawRate => (yaw_rate.map(|relation| relation.scale > 0.0), yaw_rate),
+                Channel::YawRate => (yaw_rate.map(|relation| relation.factor_to_reference > 0.0), yaw_rate),
                 _ => (None, None),
             };
             ChannelInspection { readings, to_starboard, relation }
@@ -104,7 +104,7 @@ impl Log {
         };
         let lag = (1..shares.len() - 1).contains(&best).then(|| peak(best));
         let slope = slope(lag.unwrap_or(0.0)).filter(|slope| slope.share >= MIN_SHARE)?;
-        Some(ChannelRelation { reference, scale: slope.value, lag })
+        Some(ChannelRelation { reference, factor_to_reference: slope.value, lag_behind_reference: lag })
     }
 }
 
@@ -115,7 +115,7 @@ mod tests {
 
     /// A ship of K = 0.1 1/s and T = 15 s, whose rudder follows its order 2 s later, recorded with a yaw rate of `sign`
     /// in deg/min, 3 s late.
-    fn log(sign: f64, row: impl Fn(usize) -> bool) -> Log {
+    fn log(sign: f64, row: impl Fn(usize) -> bool) -> InstrumentLog {
         let mut text = String::from("t_s,heading_deg,rudder_deg,rudder_order_deg,yaw_rate_deg_min,speed_kn\n");
         let order = |t: f64| if (t % 80.0) < 40.0 { 10.0 } else { -10.0 };
         let (mut psi, mut rates) = (355.0, vec![0.0; 1]);
@@ -131,7 +131,7 @@ mod tests {
             psi += 0.5 * (rate + rates[number]);
             rates.push(rate);
         }
-        Log::from_reader("run.csv".as_ref(), text.as_bytes(), None, None).expect("a log")
+        InstrumentLog::from_reader("run.csv".as_ref(), text.as_bytes(), None, None).expect("a log")
     }
 
     fn inspected(all: &[ChannelInspection], channel: Channel) -> &ChannelInspection {
@@ -142,22 +142,26 @@ mod tests {
     fn a_log_is_told_channel_by_channel() {
         let all = log(1.0, |row| !(100..109).contains(&row)).inspect();
         let heading = &inspected(&all, Channel::Heading).readings;
-        assert_eq!((heading.source.as_deref(), heading.count, heading.interval), (Some("heading_deg"), 391, Some(1.0)));
+        assert_eq!(
+            (heading.source.as_deref(), heading.reading_count, heading.median_interval),
+            (Some("heading_deg"), 391, Some(1.0))
+        );
         assert_eq!(heading.longest_gap, Some([99.0, 10.0]));
         assert!(heading.smallest_change.is_some_and(|change| (change.to_degrees() - 0.1).abs() < 1e-9), "{heading:?}");
         assert!(
-            heading.wraps.is_some_and(|wraps| wraps > 0) && inspected(&all, Channel::Speed).readings.wraps.is_none()
+            heading.north_crossings.is_some_and(|wraps| wraps > 0)
+                && inspected(&all, Channel::Speed).readings.north_crossings.is_none()
         );
         let rate = inspected(&all, Channel::YawRate);
         assert_eq!(rate.to_starboard, Some(true));
         let relation = rate.relation.expect("it is that of the heading");
-        assert!((relation.scale - 1.0).abs() < 0.02, "{relation:?}");
-        assert!(relation.lag.is_some_and(|lag| (lag - 3.0).abs() < 0.3), "{relation:?}");
+        assert!((relation.factor_to_reference - 1.0).abs() < 0.02, "{relation:?}");
+        assert!(relation.lag_behind_reference.is_some_and(|lag| (lag - 3.0).abs() < 0.3), "{relation:?}");
         let rudder = inspected(&all, Channel::Rudder);
         assert_eq!((rudder.to_starboard, inspected(&all, Channel::RudderOrder).to_starboard), (Some(true), Some(true)));
         let relation = rudder.relation.expect("it has an order");
-        assert!((relation.scale - 1.0).abs() < 0.05, "{relation:?}");
-        assert!(relation.lag.is_some_and(|lag| (lag - 2.0).abs() < 0.3), "{relation:?}");
+        assert!((relation.factor_to_reference - 1.0).abs() < 0.05, "{relation:?}");
+        assert!(relation.lag_behind_reference.is_some_and(|lag| (lag - 2.0).abs() < 0.3), "{relation:?}");
         assert_eq!(inspected(&all, Channel::Speed).readings.smallest_change, None);
     }
 
@@ -167,6 +171,6 @@ mod tests {
         let all = log(-1.0, |_| true).inspect();
         let rate = inspected(&all, Channel::YawRate);
         assert_eq!((rate.to_starboard, inspected(&all, Channel::Rudder).to_starboard), (Some(false), Some(true)));
-        assert!(rate.relation.is_some_and(|relation| (relation.scale + 1.0).abs() < 0.02), "{rate:?}");
+        assert!(rate.relation.is_some_and(|relation| (relation.factor_to_reference + 1.0).abs() < 0.02), "{rate:?}");
     }
 }

@@ -6,12 +6,12 @@ use std::path::Path;
 use document::{Warning, WarningCode};
 use ship::effects::ColumnFormula;
 
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::head::Head;
 use crate::cells::parse_cell;
 use crate::channel::{Channel, Unit};
-use crate::clock::Stamp;
-use crate::names::{ColumnMeaning, column_meaning, quantity_unit_meaning, with_unit};
+use crate::clock::TimeStamp;
+use crate::names::{ColumnMeaning, column_meaning, meaning_with_unit, quantity_unit_meaning};
 use crate::sidecar::{ColumnReference, Sidecar, SidecarProblem};
 use crate::wording::shortened;
 
@@ -160,7 +160,7 @@ impl Layout {
         if layout.time_column().is_none() && !rebuilt {
             let accepted = "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".into();
             let (line, columns) = (head.line, layout.names());
-            return Err(fault(Problem::NoColumn { line, wanted: "time", accepted, columns }));
+            return Err(fault(ReadProblem::NoColumn { line, wanted: "time", accepted, columns }));
         }
         Ok(layout)
     }
@@ -217,7 +217,7 @@ impl Layout {
                         let index = self.columns[..self.cells].iter().position(|column| column.name == *name);
                         index.ok_or_else(|| name.clone())
                     };
-                    match formula.names().iter().map(index).collect() {
+                    match formula.column_names().iter().map(index).collect() {
                         Ok(places) => self.formulas.push((formula.clone(), places)),
                         Err(name) => {
                             let header = self.names();
@@ -246,7 +246,7 @@ impl Layout {
     }
 
     /// Assigns to every channel the column whose meaning is the most certain.
-    fn settle_channels(&mut self) -> Result<(), Problem> {
+    fn settle_channels(&mut self) -> Result<(), ReadProblem> {
         for channel in Channel::ALL {
             let claim = |(index, column): (usize, &RawColumn)| match column.claim? {
                 (ColumnMeaning::Channel(claimed, unit), rank) if claimed == channel => Some((rank, index, unit)),
@@ -294,18 +294,18 @@ impl Layout {
         }
     }
 
-    fn duplicate(&self, quantity: &'static str, first: usize, second: usize) -> Problem {
+    fn duplicate(&self, quantity: &'static str, first: usize, second: usize) -> ReadProblem {
         let [first, second] = [first, second].map(|index| self.columns[index].name.clone());
-        Problem::Duplicate { line: self.line, quantity, first, second }
+        ReadProblem::Duplicate { line: self.line, quantity, first, second }
     }
 
     /// Chooses the column of time, and its dates.
-    fn settle_time(&mut self, head: &Head) -> Result<(), Problem> {
+    fn settle_time(&mut self, head: &Head) -> Result<(), ReadProblem> {
         let cells = head.first_row();
         let first = |index: usize| cells.get(index).copied().unwrap_or_default();
         let is_number = |index: usize| parse_cell(first(index), head.separator).number().is_some();
-        let stamp = |index: usize| Stamp::parse(first(index));
-        let is_whole = |stamp: Stamp| stamp.has_date() && stamp.has_time();
+        let stamp = |index: usize| TimeStamp::parse(first(index));
+        let is_whole = |stamp: TimeStamp| stamp.has_date() && stamp.has_time();
         // Order of preference: described or `quantity_unit`, a number with a unit, a stamp with its date, a time of
         // day, a number.
         let candidate = |(index, column): (usize, &RawColumn)| {
@@ -353,11 +353,11 @@ impl Layout {
     }
 
     /// Refuses a table that has no rudder, or neither heading nor yaw rate.
-    fn check(&self) -> Result<(), Problem> {
+    fn check(&self) -> Result<(), ReadProblem> {
         let line = self.line;
         let missing = |channels: [Channel; 2], wanted| {
             let names = channels.map(|channel| channel.accepted_names());
-            Err(Problem::NoColumn { line, wanted, accepted: names.join(" or "), columns: self.names() })
+            Err(ReadProblem::NoColumn { line, wanted, accepted: names.join(" or "), columns: self.names() })
         };
         if self.rudder_column().is_none() {
             return missing([Channel::Rudder, Channel::RudderOrder], "rudder angle");
@@ -365,7 +365,7 @@ impl Layout {
         if self.column_of(Channel::Heading).is_none() && self.column_of(Channel::YawRate).is_none() {
             let is_course = |column: &&RawColumn| column.claims(|meaning| meaning == ColumnMeaning::CourseOverGround);
             return match self.columns.iter().find(is_course) {
-                Some(column) => Err(Problem::CourseOnly { line, column: column.name.clone() }),
+                Some(column) => Err(ReadProblem::CourseOnly { line, column: column.name.clone() }),
                 None => missing([Channel::Heading, Channel::YawRate], "heading or the yaw rate"),
             };
         }
@@ -383,7 +383,7 @@ fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
         ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::SpeedOverGround(None)
     );
     let complete = match below.filter(|_| open) {
-        Some(unit) => with_unit(named, unit)?,
+        Some(unit) => meaning_with_unit(named, unit)?,
         None => named,
     };
     Some((complete, rank))

@@ -3,7 +3,7 @@
 use crate::file::FileKind;
 use crate::record::Trial;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 
 /// Maximum number of rows of a log, eleven days at 20 Hz.
 pub const MAX_ROWS: usize = 20_000_000;
@@ -15,8 +15,8 @@ pub const MAX_CELLS: usize = 50_000_000;
 pub const RECORD_FILE: FileKind = FileKind { name: "a record", max_bytes: 20 * MAX_CELLS as u64 };
 
 /// Problem of a table without rows after a line.
-pub(super) fn no_rows_problem(line: usize) -> Problem {
-    Problem::NoRows { line, needed: Trial::MIN_ROWS }
+pub(super) fn no_rows_problem(line: usize) -> ReadProblem {
+    ReadProblem::NoRows { line, needed: Trial::MIN_ROWS }
 }
 
 /// `true` for a comment, which is skipped.

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use sha2::{Digest, Sha256};
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use crate::encoding::{Encoding, windows_1252};
 
 /// Maximum length of a line of a table, bytes.
@@ -71,26 +71,26 @@ impl<R: Read> Lines<R> {
     }
 
     /// Number of the line read last, from 1; 0 before the first.
-    pub fn number(&self) -> usize {
+    pub fn line_number(&self) -> usize {
         self.number
     }
 
     /// Number of bytes read so far.
-    pub fn consumed(&self) -> u64 {
+    pub fn consumed_bytes(&self) -> u64 {
         self.consumed
     }
 
     /// Reads the bytes of a line, or the beginning of a line that is too long, without line end and byte order mark.
     /// Returns the number of bytes read and `true` for a complete line; `None` at the end of the file.
-    fn take_line(&mut self) -> Result<Option<(usize, bool)>, Problem> {
+    fn take_line(&mut self) -> Result<Option<(usize, bool)>, ReadProblem> {
         self.bytes.clear();
         if self.number == 0 {
             // Old Macintosh programs end lines with a carriage return alone.
-            let begin = self.input.fill_buf().map_err(Problem::from_input)?;
+            let begin = self.input.fill_buf().map_err(ReadProblem::from_input)?;
             self.end = if begin.contains(&b'\r') && !begin.contains(&b'\n') { b'\r' } else { b'\n' };
         }
         let mut limited = (&mut self.input).take(MAX_LINE_BYTES as u64 + 1);
-        let length = limited.read_until(self.end, &mut self.bytes).map_err(Problem::from_input)?;
+        let length = limited.read_until(self.end, &mut self.bytes).map_err(ReadProblem::from_input)?;
         self.number += usize::from(length > 0);
         self.consumed += length as u64;
         let whole = length <= MAX_LINE_BYTES || self.bytes.last() == Some(&self.end);
@@ -106,24 +106,24 @@ impl<R: Read> Lines<R> {
     /// Skips a line without decoding it; `false` at the end of the file.
     ///
     /// Fails for UTF-16, for a zero byte, and for a line longer than [`MAX_LINE_BYTES`].
-    pub fn skip(&mut self) -> Result<bool, Problem> {
+    pub fn skip(&mut self) -> Result<bool, ReadProblem> {
         let Some((length, _)) = self.take_line()? else { return Ok(false) };
         let line = self.number;
         if line == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
-            return Err(Problem::Utf16);
+            return Err(ReadProblem::Utf16);
         }
         if self.bytes.contains(&0) {
-            return Err(Problem::Binary { line });
+            return Err(ReadProblem::Binary { line });
         }
         if length > MAX_LINE_BYTES {
-            return Err(Problem::LongLine { line, limit: MAX_LINE_BYTES });
+            return Err(ReadProblem::LongLine { line, limit: MAX_LINE_BYTES });
         }
         Ok(true)
     }
 
     /// Next line without its end; `None` at the end of the file. Fails as [`skip`](Self::skip) does, and for bytes that
     /// are not text in the encoding.
-    pub fn next_line(&mut self) -> Result<Option<&str>, Problem> {
+    pub fn next_line(&mut self) -> Result<Option<&str>, ReadProblem> {
         if !self.skip()? {
             return Ok(None);
         }
@@ -134,7 +134,7 @@ impl<R: Read> Lines<R> {
             }
             // Only the degree sign and accented letters are decoded as Windows 1252, as written by old programs.
             if self.bytes.iter().any(|byte| matches!(byte, 0x80..=0x9f)) {
-                return Err(Problem::NotUtf8 { line: self.number, byte: self.bytes[valid] });
+                return Err(ReadProblem::NotUtf8 { line: self.number, byte: self.bytes[valid] });
             }
         }
         self.text.clear();
@@ -146,10 +146,10 @@ impl<R: Read> Lines<R> {
     ///
     /// A line longer than [`MAX_LINE_BYTES`] is cut one byte beyond that, and its remainder is skipped; `None` at the
     /// end of the file.
-    pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
+    pub fn next_line_bytes(&mut self) -> Result<Option<&[u8]>, ReadProblem> {
         let Some((_, whole)) = self.take_line()? else { return Ok(None) };
         if !whole {
-            self.consumed += self.input.skip_until(self.end).map_err(Problem::from_input)? as u64;
+            self.consumed += self.input.skip_until(self.end).map_err(ReadProblem::from_input)? as u64;
         }
         Ok(Some(&self.bytes))
     }
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(lines.next_line().expect("text"), Some(""));
         assert_eq!(lines.next_line().expect("text"), Some("c"));
         assert_eq!(lines.next_line().expect("text"), None);
-        assert_eq!((lines.number(), lines.consumed()), (4, 10));
+        assert_eq!((lines.line_number(), lines.consumed_bytes()), (4, 10));
         let mut lines = Lines::new(&b"a\rb\r"[..], Encoding::Utf8);
         let mut next = || lines.next_line().expect("text").map(str::to_owned);
         assert_eq!([(); 3].map(|()| next()), [Some("a".to_owned()), Some("b".to_owned()), None]);
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(lines.next_line().expect("text"), Some("Z20° €Ÿ"));
         let mut lines = Lines::new(&b"Z20\xb0\n\x80 5\n"[..], Encoding::Utf8);
         assert_eq!(lines.next_line().expect("text"), Some("Z20°"));
-        assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0x80 })));
+        assert!(matches!(lines.next_line(), Err(ReadProblem::NotUtf8 { line: 2, byte: 0x80 })));
     }
 
     #[test]
@@ -202,12 +202,12 @@ mod tests {
         file.extend(vec![b'7'; 3 * MAX_LINE_BYTES]);
         file.extend(b"\nlast");
         let mut lines = Lines::new(&file[..], Encoding::Utf8);
-        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"$A"[..]));
-        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"b\0\xffc"[..]));
-        assert_eq!(lines.next_bytes().expect("bytes").map(<[u8]>::len), Some(MAX_LINE_BYTES + 1));
-        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"last"[..]));
-        assert_eq!(lines.next_bytes().expect("bytes"), None);
-        assert_eq!((lines.number(), lines.consumed()), (4, file.len() as u64));
+        assert_eq!(lines.next_line_bytes().expect("bytes"), Some(&b"$A"[..]));
+        assert_eq!(lines.next_line_bytes().expect("bytes"), Some(&b"b\0\xffc"[..]));
+        assert_eq!(lines.next_line_bytes().expect("bytes").map(<[u8]>::len), Some(MAX_LINE_BYTES + 1));
+        assert_eq!(lines.next_line_bytes().expect("bytes"), Some(&b"last"[..]));
+        assert_eq!(lines.next_line_bytes().expect("bytes"), None);
+        assert_eq!((lines.line_number(), lines.consumed_bytes()), (4, file.len() as u64));
         let mut table = Lines::new(&file[..], Encoding::Utf8);
         assert_eq!(table.next_line().expect("text"), Some("$A"));
         let whole: String = Sha256::digest(&file).iter().map(|byte| format!("{byte:02x}")).collect();
@@ -217,9 +217,9 @@ mod tests {
     #[test]
     fn a_line_without_end_is_refused_before_it_fills_the_memory() {
         let mut lines = Lines::new(std::io::repeat(b'7'), Encoding::Utf8);
-        assert!(matches!(lines.next_line(), Err(Problem::LongLine { line: 1, .. })));
+        assert!(matches!(lines.next_line(), Err(ReadProblem::LongLine { line: 1, .. })));
         let mut lines = Lines::new(&b"a\nb\0c\n"[..], Encoding::Utf8);
         lines.next_line().expect("text");
-        assert!(matches!(lines.next_line(), Err(Problem::Binary { line: 2 })));
+        assert!(matches!(lines.next_line(), Err(ReadProblem::Binary { line: 2 })));
     }
 }

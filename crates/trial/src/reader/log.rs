@@ -9,13 +9,13 @@ use ship::Particulars;
 use super::assemble::{
     add_derived_channels, check_channels, interpolate_rudder, merge_series, split_columns, without_duplicates,
 };
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::input::{self, FileContent};
 use super::lines::{self, Lines};
 use super::messages;
 use super::nmea;
 use super::rudder;
-use super::source::{Log, Readings, Series};
+use super::source::{InstrumentLog, Readings, Series};
 use super::table;
 use crate::channel::Channel;
 use crate::cleaning;
@@ -36,14 +36,14 @@ pub struct ReadRecord {
     pub warnings: Vec<Warning>,
 }
 
-impl Log {
+impl InstrumentLog {
     /// Reads the log at `path`, or from standard input for `-`, with the sidecar at `sidecar`, and joins the
     /// channels of `joined`, each with the sidecar next to it.
     ///
-    /// Fails as [`read_with`] does, except for the checks of a record, and if two files have no time in common.
+    /// Fails as [`read_with_sidecar`] does, except for the checks of a record, and if two files have no time in common.
     pub fn open(path: &Path, sidecar: Option<&Path>, joined: &[PathBuf]) -> Result<Self, ReadError> {
         if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
-            return Err(ReadError::table(path, Problem::IsSidecar));
+            return Err(ReadError::table(path, ReadProblem::IsSidecar));
         }
         let mut log = Self::from_file(path, sidecar, joined.is_empty())?;
         for file in joined {
@@ -117,7 +117,7 @@ impl Log {
         split_columns(self.columns.clone(), 0.0).into_iter().map(named).collect()
     }
 
-    pub(super) fn fault(&self, problem: impl Into<Problem>) -> ReadError {
+    pub(super) fn fault(&self, problem: impl Into<ReadProblem>) -> ReadError {
         ReadError::table(&self.path, problem.into())
     }
 
@@ -128,7 +128,7 @@ impl Log {
             (Some(first), Some(second)) => offset(first, second),
             (None, None) => 0.0,
             (clock, _) => {
-                let problem = Problem::TwoClocks { first: self.path.clone(), stamped: clock.is_some() };
+                let problem = ReadProblem::TwoClocks { first: self.path.clone(), stamped: clock.is_some() };
                 return Err(ReadError::table(file, problem));
             }
         };
@@ -223,7 +223,7 @@ impl Log {
         if rows.is_empty() {
             let ends = |time: Option<&f64>| time.copied().unwrap_or(f64::NAN);
             let (first_s, last_s) = (ends(time.first()), ends(time.last()));
-            return Err(self.fault(Problem::EmptyPart { from_s: from, until_s: until, first_s, last_s }));
+            return Err(self.fault(ReadProblem::EmptyPart { from_s: from, until_s: until, first_s, last_s }));
         }
         if rows.len() < time.len() {
             self.part = Some([time[rows.start], time[rows.end - 1]]);
@@ -233,7 +233,7 @@ impl Log {
             };
             cut(&mut self.columns.time);
             self.columns.channels.values_mut().for_each(cut);
-            self.columns.unknown.iter_mut().for_each(|(_, values)| cut(values));
+            self.columns.unknown_columns.iter_mut().for_each(|(_, values)| cut(values));
             self.columns.channels.retain(|_, values| values.iter().any(|value| value.is_finite()));
         }
         Ok(self)
@@ -256,8 +256,8 @@ impl Log {
         let origin = RecordOrigin::Measured { file: path.display().to_string(), sha256 };
         let mut trial = Trial::new(input::stem(&path), origin, columns).map_err(|error| {
             fault(match error {
-                TrialError::TooShort { needed, rows: usable } => Problem::TooShort { needed, usable, rows },
-                error => Problem::Record(error),
+                TrialError::TooShort { needed, rows: usable } => ReadProblem::TooShort { needed, usable, rows },
+                error => ReadProblem::Record(error),
             })
         })?;
         if trial.is_heading_integrated() {
@@ -277,7 +277,7 @@ impl Log {
                         instrument and is not used";
             warnings.push(WarningCode::YawRate.warning(text));
         }
-        match plausibility::check(&trial) {
+        match plausibility::check_plausibility(&trial) {
             Ok(doubts) => warnings.extend(doubts),
             Err(implausible) if !checked => warnings.push(WarningCode::Implausible.warning(implausible.to_string())),
             Err(implausible) => return Err(fault(implausible.into())),
@@ -306,22 +306,22 @@ fn joined_hash(first: &str, second: &str) -> String {
 /// Log of sentences or messages; a `whole` record requires rudder and heading.
 fn of_series(
     path: &Path,
-    read: Result<(Vec<Series>, Log), Problem>,
+    read: Result<(Vec<Series>, InstrumentLog), ReadProblem>,
     sidecar: &Sidecar,
     whole: bool,
-) -> Result<Log, ReadError> {
+) -> Result<InstrumentLog, ReadError> {
     let log = read.map(|(series, log)| of_sentences(series, log, sidecar));
     let checked = log.and_then(|log| if whole { check_channels(&log.columns).map(|()| log) } else { Ok(log) });
     checked.map_err(|problem| ReadError::table(path, problem))
 }
 
 /// Log of channels at separate instants, each cleaned separately, in the part declared by the sidecar.
-fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
+fn of_sentences(series: Vec<Series>, mut log: InstrumentLog, sidecar: &Sidecar) -> InstrumentLog {
     let cleaned = series.into_iter().map(|Series { channel, time, mut values, source }| {
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
-        let mut single = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
+        let mut single = Columns { time, channels: [(channel, values)].into(), unknown_columns: Vec::new() };
         if sidecar.is_checked() {
             log.warnings.extend(rudder::repeat_held_rudder(&mut single));
             log.warnings.extend(cleaning::clean(&mut single, &mut log.rejected));
@@ -333,14 +333,14 @@ fn of_sentences(series: Vec<Series>, mut log: Log, sidecar: &Sidecar) -> Log {
     let keep: Vec<bool> = columns.time.iter().map(|t| part.contains(t)).collect();
     columns.retain(&keep);
     log.readings = Readings::Series(cleaned.into_iter().map(|series| (series.within(&part), 0.0)).collect());
-    Log { columns, ..log }
+    InstrumentLog { columns, ..log }
 }
 
 /// Reads the trial at `path`, with the sidecar next to it, if any.
 ///
-/// Fails as [`read_with`] does.
+/// Fails as [`read_with_sidecar`] does.
 pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
-    read_with(path, Sidecar::existing_beside(path).as_deref())
+    read_with_sidecar(path, Sidecar::existing_beside(path).as_deref())
 }
 
 /// Reads the trial at `path` with the sidecar at `sidecar`; `None` uses the header only.
@@ -349,19 +349,19 @@ pub fn read(path: &Path) -> Result<ReadRecord, ReadError> {
 /// required channel is absent, a cell is not a number, time does not increase, fewer than [`Trial::MIN_ROWS`]
 /// or more than [`super::MAX_ROWS`] rows are usable, the sidecar is invalid, or the record is implausible
 /// ([`plausibility`]).
-pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
-    Log::open(path, sidecar, &[])?.into_trial(None)
+pub fn read_with_sidecar(path: &Path, sidecar: Option<&Path>) -> Result<ReadRecord, ReadError> {
+    InstrumentLog::open(path, sidecar, &[])?.into_trial(None)
 }
 
 /// Reads a trial from `input`; `path` is its name, and `size` (bytes) gives an estimate of the rows of a file that is
 /// too long.
 ///
-/// Fails as [`read_with`] does, except for faults of the file system.
+/// Fails as [`read_with_sidecar`] does, except for faults of the file system.
 pub fn read_from_reader(
     path: &Path,
     input: impl Read,
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
 ) -> Result<ReadRecord, ReadError> {
-    Log::from_reader(path, input, size, sidecar)?.into_trial(None)
+    InstrumentLog::from_reader(path, input, size, sidecar)?.into_trial(None)
 }

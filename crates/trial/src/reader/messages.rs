@@ -13,12 +13,12 @@ use std::io::Read;
 use document::{Warning, WarningCode};
 use ship::angle::DEGREE;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::limits::MAX_CELLS;
 use super::lines::Lines;
-use super::source::{Log, Series};
+use super::source::{InstrumentLog, Series};
 use crate::channel::Channel;
-use crate::clock::{Clock, SECONDS_PER_DAY, Stamp, StampConverter, StampFault};
+use crate::clock::{Clock, SECONDS_PER_DAY, StampConverter, StampFault, TimeStamp};
 use crate::wording::{counted, shortened};
 use canboat::Canboat;
 use message::Message;
@@ -68,16 +68,16 @@ struct MessageLog {
 }
 
 impl MessageLog {
-    fn take(&mut self, message: &Message, line: usize) -> Result<(), Problem> {
+    fn take(&mut self, message: &Message, line: usize) -> Result<(), ReadProblem> {
         let text = message.stamp;
         // Older versions of canboat write 2011-11-24-22:42:04.388.
         let joined = text.get(10..11).filter(|mark| *mark == "-").map(|_| format!("{}T{}", &text[..10], &text[11..]));
-        let stamp = Stamp::parse(joined.as_deref().unwrap_or(text)).filter(Stamp::has_time);
+        let stamp = TimeStamp::parse(joined.as_deref().unwrap_or(text)).filter(TimeStamp::has_time);
         let value = || shortened(text);
-        let stamp = stamp.ok_or_else(|| Problem::NotAStamp { line, column: "timestamp".into(), value: value() })?;
+        let stamp = stamp.ok_or_else(|| ReadProblem::NotAStamp { line, column: "timestamp".into(), value: value() })?;
         let at = self.stamps.seconds(stamp).map_err(|fault| match fault {
-            StampFault::AmbiguousDate => Problem::AmbiguousDate { line, value: value() },
-            StampFault::NoTime => Problem::NotAStamp { line, column: "timestamp".into(), value: value() },
+            StampFault::AmbiguousDate => ReadProblem::AmbiguousDate { line, value: value() },
+            StampFault::NoTime => ReadProblem::NotAStamp { line, column: "timestamp".into(), value: value() },
         })?;
         self.messages += 1;
         for &(channel, class, value) in &message.readings {
@@ -92,7 +92,7 @@ impl MessageLog {
             }
         }
         if self.readings > MAX_CELLS {
-            return Err(Problem::TooManyReadings { line, limit: MAX_CELLS });
+            return Err(ReadProblem::TooManyReadings { line, limit: MAX_CELLS });
         }
         Ok(())
     }
@@ -135,14 +135,17 @@ impl MessageLog {
     }
 }
 
-/// Reads a log: a series for each channel, and a [`Log`] without columns.
+/// Reads a log: a series for each channel, and an [`InstrumentLog`] without columns.
 ///
 /// Fails for an invalid stamp, for too many readings, and if no message contains a used quantity.
-pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Result<(Vec<Series>, Log), Problem> {
+pub(super) fn read<R: Read>(
+    mut lines: Lines<R>,
+    format: &MessageFormat,
+) -> Result<(Vec<Series>, InstrumentLog), ReadProblem> {
     let mut log = MessageLog::default();
     let (mut canboat, mut table) = (Canboat::default(), None);
     while let Some(text) = lines.next_line()?.map(str::to_owned) {
-        let number = lines.number();
+        let number = lines.line_number();
         if text.trim().is_empty() {
             continue;
         }
@@ -159,11 +162,11 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
             None => log.unread += 1,
         }
     }
-    let (rows, unread, messages) = (lines.number(), log.unread, log.messages);
+    let (rows, unread, messages) = (lines.line_number(), log.unread, log.messages);
     let clock = log.stamps.clock();
     let (mut series, mut warnings) = log.choice();
     if series.is_empty() {
-        return Err(Problem::NoReadings { sentences: messages });
+        return Err(ReadProblem::NoReadings { sentences: messages });
     }
     if *format == MessageFormat::Canboat {
         warnings.extend(in_radians(&mut series, canboat.is_si));
@@ -173,7 +176,7 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>, format: &MessageFormat) -> Resu
         warnings.push(WarningCode::LeftOut.warning(text));
     }
     let clock = begin_at_zero(&mut series, clock);
-    Ok((series, Log { clock, warnings, rows, sha256: lines.sha256(), ..Log::default() }))
+    Ok((series, InstrumentLog { clock, warnings, rows, sha256: lines.sha256(), ..InstrumentLog::default() }))
 }
 
 /// Converts angles to radians: canboat writes degrees, or radians with an option. If no line states the unit (`is_si`

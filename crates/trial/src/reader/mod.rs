@@ -36,13 +36,13 @@ mod tests;
 mod units;
 
 pub use description::draft_sidecar;
-pub use error::{Problem, ReadError};
+pub use error::{ReadError, ReadProblem};
 pub use inspection::{ChannelInspection, ChannelRelation};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD_FILE};
 pub use lines::MAX_LINE_BYTES;
-pub use log::{ReadRecord, read, read_from_reader, read_with};
+pub use log::{ReadRecord, read, read_from_reader, read_with_sidecar};
 
-pub use source::{ChannelReadings, Log};
+pub use source::{ChannelReadings, InstrumentLog};
 
 pub use crate::cells::Separator;
 pub use crate::encoding::Encoding;

@@ -5,13 +5,13 @@ use std::ops::{Range, RangeInclusive};
 
 use ship::angle::{DEGREE, unwrap_heading};
 
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::layout::{ColumnContent, Layout};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
 use crate::cells::{CellContent, Separator, parse_cell};
 use crate::channel::Channel;
 use crate::cleaning::is_sentinel;
-use crate::clock::{Stamp, StampConverter, StampFault};
+use crate::clock::{StampConverter, StampFault, TimeStamp};
 use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::wording::shortened;
@@ -111,7 +111,7 @@ impl<'a> Rows<'a> {
     /// Checks the number of rows after `consumed` of the `size` bytes of the file.
     ///
     /// Fails beyond [`MAX_ROWS`] and [`MAX_CELLS`], and early if the size of the file predicts far too many rows.
-    pub fn check_length(&self, consumed: u64, size: Option<u64>) -> Result<(), Problem> {
+    pub fn check_length(&self, consumed: u64, size: Option<u64>) -> Result<(), ReadProblem> {
         const ESTIMATE_ROWS: usize = 10_000;
         const MIN_EXCESS: f64 = 1.5;
         let kept = self.time.len();
@@ -131,14 +131,14 @@ impl<'a> Rows<'a> {
             ((rows / digit).round() * digit) as u64
         });
         let times = estimate.map_or(2, |rows| rows / limit as u64 + 1).max(2);
-        Err(Problem::TooManyRows { limit, columns: self.width, estimate, every: times * self.every as u64 })
+        Err(ReadProblem::TooManyRows { limit, columns: self.width, estimate, every: times * self.every as u64 })
     }
 
     /// Adds a line: a row, a comment or an empty line.
     ///
     /// Fails for a cell that is neither a number nor a stamp, a wrong number of cells, and a time that runs backwards
     /// or repeats with other values.
-    pub fn add(&mut self, line: &str, number: usize) -> Result<(), Problem> {
+    pub fn add(&mut self, line: &str, number: usize) -> Result<(), ReadProblem> {
         if is_comment(line) {
             return Ok(());
         }
@@ -185,34 +185,34 @@ impl<'a> Rows<'a> {
     }
 
     /// Seconds from the first stamp to the stamp of a row; NaN for an empty cell.
-    fn stamp(&mut self, line: &str, number: usize, place: usize) -> Result<f64, Problem> {
+    fn stamp(&mut self, line: &str, number: usize, place: usize) -> Result<f64, ReadProblem> {
         let text = |place: usize| self.cells.get(place).map_or("", |range| &line[range.clone()]);
         let time_cell = text(place);
-        let read = Stamp::parse(time_cell).and_then(|time| match self.date_place {
-            Some(date) => Some(Stamp::joined(Stamp::parse(text(date))?, time)),
+        let read = TimeStamp::parse(time_cell).and_then(|time| match self.date_place {
+            Some(date) => Some(TimeStamp::joined(TimeStamp::parse(text(date))?, time)),
             None => Some(time),
         });
         let value = || shortened(time_cell);
         let no_stamp =
-            || Problem::NotAStamp { line: number, column: self.layout.columns[place].name.clone(), value: value() };
+            || ReadProblem::NotAStamp { line: number, column: self.layout.columns[place].name.clone(), value: value() };
         let (Some(stamp), Some(stamps)) = (read, &mut self.stamps) else {
             let missing = parse_cell(time_cell, self.separator) == CellContent::Missing;
             return if missing { Ok(f64::NAN) } else { Err(no_stamp()) };
         };
         self.whole_seconds &= !stamp.has_fraction();
         stamps.seconds(stamp).map_err(|fault| match fault {
-            StampFault::AmbiguousDate => Problem::AmbiguousDate { line: number, value: value() },
+            StampFault::AmbiguousDate => ReadProblem::AmbiguousDate { line: number, value: value() },
             StampFault::NoTime => no_stamp(),
         })
     }
 
     /// Converts the cells of a row to numbers in SI units, into `self.row`.
-    fn parse(&mut self, line: &str, number: usize) -> Result<(), Problem> {
+    fn parse(&mut self, line: &str, number: usize) -> Result<(), ReadProblem> {
         let (cells, expected) = (self.cells.len(), self.layout.cells);
         let surplus = self.cells.get(expected..).is_some_and(|extra| extra.iter().any(|cell| !cell.is_empty()));
         // With blanks between the cells a missing cell cannot be located.
         if surplus || (cells < expected && self.separator == Separator::Blank) {
-            return Err(Problem::WrongCellCount { line: number, cells, expected });
+            return Err(ReadProblem::WrongCellCount { line: number, cells, expected });
         }
         self.counts.short_rows += usize::from(cells < expected);
         let checked = self.sidecar.is_checked();
@@ -253,7 +253,7 @@ impl<'a> Rows<'a> {
                 }
                 CellContent::Text => {
                     let (column, value) = (column.name.clone(), shortened(text));
-                    return Err(Problem::NotANumber { line: number, column, value });
+                    return Err(ReadProblem::NotANumber { line: number, column, value });
                 }
             };
         }
@@ -280,7 +280,7 @@ impl<'a> Rows<'a> {
 
     /// `true` for a row later than the last row, or with the same stamp of whole seconds. An exact copy of the last row
     /// and a single row with a stray time give `false`. Fails if time continues from an earlier time.
-    fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
+    fn follows(&mut self, time: f64, number: usize) -> Result<bool, ReadProblem> {
         let may_share = self.stamps.is_some() && self.whole_seconds;
         let Some((last, row)) = &mut self.before.last else {
             self.before.last = Some((time, self.row.clone()));
@@ -288,7 +288,7 @@ impl<'a> Rows<'a> {
         };
         if time < *last {
             if let Some((line, time)) = self.before.stray {
-                return Err(Problem::TimeBackwards { line, before: *last, time });
+                return Err(ReadProblem::TimeBackwards { line, before: *last, time });
             }
             if self.before.earlier.is_none_or(|earlier| time <= earlier) {
                 self.counts.stray_times.push(time);
@@ -305,7 +305,7 @@ impl<'a> Rows<'a> {
         } else if time == *last && !may_share {
             let same = row.iter().zip(&self.row).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
             if !same {
-                return Err(Problem::TimeRepeats { line: number, time });
+                return Err(ReadProblem::TimeRepeats { line: number, time });
             }
             self.counts.repeated_rows += 1;
             return Ok(false);

@@ -73,7 +73,10 @@ pub(super) fn repeat_held_rudder(columns: &mut Columns) -> Option<Warning> {
     )))
 }
 
-/// Columns with every reading of the rudder `late` seconds earlier; rows are the instants of all readings.
+/// Columns with every reading of rudder and rudder order `late` seconds earlier.
+///
+/// The rows are the instants of all readings of heading, yaw rate, rudder and order. A row has NaN in those of the four
+/// channels that were not read at its instant; all other channels are interpolated.
 pub(super) fn with_earlier_rudder(columns: Columns, late: f64) -> Columns {
     let mut all = assemble::split_columns(columns, 0.0);
     for rudder in all.iter_mut().filter(|series| matches!(series.channel, Channel::Rudder | Channel::RudderOrder)) {
@@ -121,7 +124,7 @@ mod tests {
         let read = |t: &f64| if (10.0..30.0).contains(t) { f64::NAN } else { 2.0 * (t - 2.5) };
         let rudder = time.iter().map(read).collect();
         let channels = [(Channel::Heading, time.clone()), (Channel::Rudder, rudder)].into();
-        let mut moved = with_earlier_rudder(Columns { time, channels, unknown: Vec::new() }, 2.5);
+        let mut moved = with_earlier_rudder(Columns { time, channels, unknown_columns: Vec::new() }, 2.5);
         assemble::interpolate_rudder(&mut moved);
         for (t, angle) in moved.time.iter().zip(&moved.channels[&Channel::Rudder]) {
             assert!((angle - 2.0 * t).abs() < 1e-12, "{t} s: {angle}");

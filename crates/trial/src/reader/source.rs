@@ -29,7 +29,7 @@ pub(super) struct Series {
     pub source: Option<String>,
 }
 
-/// Readings of a log for [`Log::inspect`], before the log was joined or completed.
+/// Readings of a log for [`InstrumentLog::inspect`], before the log was joined or completed.
 #[derive(Debug, Clone, Default)]
 pub(super) enum Readings {
     /// Columns of the log, which contain readings only.
@@ -43,7 +43,7 @@ pub(super) enum Readings {
 
 /// Log: the columns of one or several files, cleaned and on a common clock.
 #[derive(Debug, Clone, Default)]
-pub struct Log {
+pub struct InstrumentLog {
     pub(super) path: PathBuf,
     pub(super) columns: Columns,
     /// Clock at time 0; `None` if the files state neither date nor time of day.
@@ -73,17 +73,17 @@ pub struct ChannelReadings {
     /// Name of the column or instrument; `None` for a derived channel.
     pub source: Option<String>,
     /// Number of readings.
-    pub count: usize,
+    pub reading_count: usize,
     /// Median interval between readings, s; `None` for fewer than two readings.
-    pub interval: Option<f64>,
+    pub median_interval: Option<f64>,
     /// Beginning and length of the maximum gap between readings, s; `None` for fewer than two readings.
     pub longest_gap: Option<[f64; 2]>,
     /// Minimum and maximum reading.
-    pub range: [f64; 2],
+    pub value_range: [f64; 2],
     /// Minimum change between two successive readings, without repetitions; `None` for a constant channel.
     pub smallest_change: Option<f64>,
     /// Number of times that a heading crosses north; `None` for any other channel.
-    pub wraps: Option<usize>,
+    pub north_crossings: Option<usize>,
 }
 
 impl ChannelReadings {
@@ -100,12 +100,12 @@ impl ChannelReadings {
         Self {
             channel,
             source,
-            count: read.len(),
-            interval: upper_median(gaps().map(|[_, length]| length)),
+            reading_count: read.len(),
+            median_interval: upper_median(gaps().map(|[_, length]| length)),
             longest_gap: longest.map(|[begin, length]| [begin + shift, length]),
-            range: [low, high],
+            value_range: [low, high],
             smallest_change: changes.min_by(f64::total_cmp),
-            wraps: (channel == Channel::Heading).then(crossings),
+            north_crossings: (channel == Channel::Heading).then(crossings),
         }
     }
 }
@@ -122,7 +122,7 @@ impl Series {
     }
 }
 
-impl Log {
+impl InstrumentLog {
     /// Statistics of the readings of every channel.
     pub(super) fn readings(&self) -> Vec<ChannelReadings> {
         let columns = match &self.readings {
@@ -156,7 +156,7 @@ mod tests {
     fn headings_of_any_size_pass_north_once_a_row() {
         let values = vec![6.2, 6.4, 1e300, -1e300, 1e300];
         let time = (0..values.len()).map(|row| row as f64).collect();
-        let columns = Columns { time, channels: [(Channel::Heading, values)].into(), unknown: Vec::new() };
-        assert_eq!(Log { columns, ..Log::default() }.readings()[0].wraps, Some(4));
+        let columns = Columns { time, channels: [(Channel::Heading, values)].into(), unknown_columns: Vec::new() };
+        assert_eq!(InstrumentLog { columns, ..InstrumentLog::default() }.readings()[0].north_crossings, Some(4));
     }
 }

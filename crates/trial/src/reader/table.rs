@@ -7,7 +7,7 @@ use std::path::Path;
 use document::{Warning, WarningCode};
 
 use super::counts;
-use super::error::{Problem, ReadError};
+use super::error::{ReadError, ReadProblem};
 use super::head;
 use super::input::Text;
 use super::instants::spread_shared_stamps;
@@ -17,7 +17,7 @@ use super::lines::Lines;
 use super::position::plane_positions;
 use super::rows::Rows;
 use super::rudder;
-use super::source::Log;
+use super::source::InstrumentLog;
 use super::units::{self, UnitlessColumn};
 use crate::cells::Separator;
 use crate::channel::Channel;
@@ -37,7 +37,7 @@ pub(super) fn read(
     size: Option<u64>,
     sidecar: &Sidecar,
     whole: bool,
-) -> Result<Log, ReadError> {
+) -> Result<InstrumentLog, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     // A generated text has tabs between its cells and is UTF-8, independently of a sidecar.
     let (separator, encoding) = match input.is_generated {
@@ -53,7 +53,7 @@ pub(super) fn read(
     }
     loop {
         // The number is taken before the line is read, because the line borrows the source.
-        let (number, consumed) = (lines.number() + 1, lines.consumed());
+        let (number, consumed) = (lines.line_number() + 1, lines.consumed_bytes());
         let Some(text) = lines.next_line().map_err(fault)? else { break };
         rows.add(text, number).map_err(fault)?;
         rows.check_length(consumed, size).map_err(fault)?;
@@ -69,7 +69,7 @@ pub(super) fn read(
 
 impl Rows<'_> {
     /// Log with the columns of all rows kept; `skipped` lines were before the names.
-    fn finish(mut self, skipped: usize) -> Result<Log, Problem> {
+    fn finish(mut self, skipped: usize) -> Result<InstrumentLog, ReadProblem> {
         let line = self.layout.line;
         if self.counts.rows == 0 {
             return Err(no_rows_problem(line));
@@ -114,8 +114,8 @@ impl Rows<'_> {
             channels.entry(channel).or_insert(values);
         }
         let clock = self.stamps.as_ref().and_then(StampConverter::clock);
-        let columns = Columns { time: self.time, channels, unknown };
-        let mut log = Log { columns, clock, rows: self.counts.rows, names, ..Log::default() };
+        let columns = Columns { time: self.time, channels, unknown_columns: unknown };
+        let mut log = InstrumentLog { columns, clock, rows: self.counts.rows, names, ..InstrumentLog::default() };
         let decided = units::infer_units(&mut log, open, open_time, line)?;
         if skipped > 0 {
             let text = format!("{} before the header skipped", counted(skipped, "line"));
@@ -130,7 +130,7 @@ impl Rows<'_> {
     }
 
     /// Refuses numbers that cannot be angles or times in the unit of their column.
-    fn check_numbers(&self) -> Result<(), Problem> {
+    fn check_numbers(&self) -> Result<(), ReadProblem> {
         let Layout { columns, line, .. } = &self.layout;
         let time = self.time_place.map(|place| &columns[place]);
         if let Some(time) = time.filter(|time| !time.is_unitless && time.content == ColumnContent::Time(1.0)) {
@@ -155,17 +155,18 @@ impl Rows<'_> {
     }
 
     /// Refuses a part without rows, and required columns without a value.
-    fn check_values(&self) -> Result<(), Problem> {
+    fn check_values(&self) -> Result<(), ReadProblem> {
         let (counts, layout) = (&self.counts, &self.layout);
-        let all_missing =
-            |place: usize, quantity| Err(Problem::AllMissing { column: layout.columns[place].name.clone(), quantity });
+        let all_missing = |place: usize, quantity| {
+            Err(ReadProblem::AllMissing { column: layout.columns[place].name.clone(), quantity })
+        };
         if let Some(place) = self.time_place.filter(|_| counts.rows_without_time == counts.rows) {
             return all_missing(place, "time");
         }
         if self.usable_rows == 0 && counts.empty_rows == 0 {
             let (&from_s, &until_s) = (self.part.start(), self.part.end());
             let (first_s, last_s) = self.span.expect("some row has a time, or all_missing had returned");
-            return Err(Problem::EmptyPart { from_s, until_s, first_s, last_s });
+            return Err(ReadProblem::EmptyPart { from_s, until_s, first_s, last_s });
         }
         let is_empty = |place: &usize| layout.columns[*place].values.iter().all(|value| value.is_nan());
         if let Some(place) = layout.rudder_column().filter(is_empty) {

@@ -55,11 +55,11 @@ pub(super) fn parse(bytes: impl AsRef<[u8]>) -> Result<ReadRecord, ReadError> {
 }
 
 /// Problem of a table, after a check that its message names the file and contains `parts`.
-fn problem(bytes: impl AsRef<[u8]>, parts: &[&str]) -> Problem {
+fn problem(bytes: impl AsRef<[u8]>, parts: &[&str]) -> ReadProblem {
     complaint(parse(bytes), parts)
 }
 
-fn complaint(result: Result<ReadRecord, ReadError>, parts: &[&str]) -> Problem {
+fn complaint(result: Result<ReadRecord, ReadError>, parts: &[&str]) -> ReadProblem {
     let error = result.expect_err("the table is wrong");
     let message = error.to_string();
     assert!(message.starts_with("run.csv: "), "{message}");
@@ -175,35 +175,35 @@ fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
 
 #[test]
 fn files_that_are_no_tables_are_named() {
-    assert!(matches!(problem("", &["is empty"]), Problem::Empty));
-    assert!(matches!(problem("# only\n# remarks\n", &["after line 2"]), Problem::NoRows { .. }));
-    assert!(matches!(problem("t_s,heading_deg,rudder_deg\n", &["after line 1"]), Problem::NoRows { .. }));
-    assert!(matches!(problem(b"\x89PNG\r\n\x1a\n\0\0", &["line 1", "0x89"]), Problem::NotUtf8 { .. }));
-    assert!(matches!(problem(b"\x07\x03\x04\0\0", &["line 1", "zero byte"]), Problem::Binary { line: 1 }));
-    assert!(matches!(problem(b"\xff\xfet\0_\0s\0", &["UTF-16"]), Problem::Utf16));
+    assert!(matches!(problem("", &["is empty"]), ReadProblem::Empty));
+    assert!(matches!(problem("# only\n# remarks\n", &["after line 2"]), ReadProblem::NoRows { .. }));
+    assert!(matches!(problem("t_s,heading_deg,rudder_deg\n", &["after line 1"]), ReadProblem::NoRows { .. }));
+    assert!(matches!(problem(b"\x89PNG\r\n\x1a\n\0\0", &["line 1", "0x89"]), ReadProblem::NotUtf8 { .. }));
+    assert!(matches!(problem(b"\x07\x03\x04\0\0", &["line 1", "zero byte"]), ReadProblem::Binary { line: 1 }));
+    assert!(matches!(problem(b"\xff\xfet\0_\0s\0", &["UTF-16"]), ReadProblem::Utf16));
     let page_1252 = [simple().as_bytes(), b"# \x9320\xb0\n"].concat();
     assert!(matches!(
         problem(page_1252, &["line 242", "0x93", "windows-1252"]),
-        Problem::NotUtf8 { line: 242, byte: 0x93 }
+        ReadProblem::NotUtf8 { line: 242, byte: 0x93 }
     ));
     let degrees = simple().replacen("heading_deg,rudder_deg", "Steuerkurs [\u{b0}],Ruderlage [\u{b0}]", 1);
     let latin: Vec<u8> = degrees.chars().map(|letter| letter as u8).collect();
     assert_eq!(parse(latin).expect("an old Windows program wrote it").trial.len(), 240);
     let headless = simple().lines().skip(1).collect::<Vec<_>>().join("\n");
-    assert!(matches!(problem(headless, &["line 1", "0,350,10", "header = false"]), Problem::NoHeader { .. }));
-    assert!(matches!(problem("hello\nworld\n", &["line 1", "rudder_deg", "`hello`"]), Problem::NoColumn { .. }));
+    assert!(matches!(problem(headless, &["line 1", "0,350,10", "header = false"]), ReadProblem::NoHeader { .. }));
+    assert!(matches!(problem("hello\nworld\n", &["line 1", "rudder_deg", "`hello`"]), ReadProblem::NoColumn { .. }));
 }
 
 #[test]
 fn missing_and_doubled_columns_are_named_with_what_was_found() {
     let refusal =
         problem(table("t_s,heading_deg,helm", ","), &["line 1", "rudder angle", "rudder_deg or rudder_rad", "`helm`"]);
-    assert!(matches!(refusal, Problem::NoColumn { line: 1, .. }));
+    assert!(matches!(refusal, ReadProblem::NoColumn { line: 1, .. }));
     problem(table("t_s,compass,rudder_deg", ","), &["heading_deg", "yaw_rate_deg_s", "`compass`", "sidecar"]);
     problem(table("t_s,course,rudder_deg", ","), &["`course` is the course over ground", "no heading", "sidecar"]);
     problem(table("clock,heading_deg,rudder_deg", ","), &["no column holds the time", "t_s", "`clock`", "time-step-s"]);
     let doubled = "t_s,heading_deg,heading_rad,rudder_deg\n0,1,2,3\n";
-    assert!(matches!(problem(doubled, &["`heading_deg`", "`heading_rad`", "ignore"]), Problem::Duplicate { .. }));
+    assert!(matches!(problem(doubled, &["`heading_deg`", "`heading_rad`", "ignore"]), ReadProblem::Duplicate { .. }));
 }
 
 #[test]
@@ -214,12 +214,12 @@ fn wrong_cells_and_times_are_named_with_their_line() {
         lines.join("\n")
     };
     let refusal = problem(broken(12, "10,35o.2,10"), &["line 12", "`heading_deg`", "`35o.2`", "expected a number"]);
-    assert!(matches!(refusal, Problem::NotANumber { line: 12, .. }));
+    assert!(matches!(refusal, ReadProblem::NotANumber { line: 12, .. }));
     problem(broken(12, "10,inf,10"), &["line 12", "`inf`"]);
     problem(broken(3, "1e999,1,1"), &["line 3", "`t_s`", "`1e999`"]);
     assert!(matches!(
         problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]),
-        Problem::WrongCellCount { .. }
+        ReadProblem::WrongCellCount { .. }
     ));
     problem(table("t_s heading_deg rudder_deg", " ").replacen("\n3 ", "\n", 1), &["line 5 has 2 cells, expected 3"]);
     let single = parse(broken(12, "3.5,1,10")).expect("a single row can be left out");
@@ -229,16 +229,16 @@ fn wrong_cells_and_times_are_named_with_their_line() {
     assert_eq!((single.trial.len(), ahead.trial.len()), (239, 239));
     let again = broken(12, "3.5,1,10").replacen("\n11,", "\n4.5,", 1);
     let refusal = problem(again, &["line 12", "3.5 s after 9 s", "time-step-s"]);
-    assert!(matches!(refusal, Problem::TimeBackwards { line: 12, .. }));
+    assert!(matches!(refusal, ReadProblem::TimeBackwards { line: 12, .. }));
     let refusal = problem(broken(12, "9,1,10"), &["line 12", "time 9 s occurs twice"]);
-    assert!(matches!(refusal, Problem::TimeRepeats { line: 12, .. }));
+    assert!(matches!(refusal, ReadProblem::TimeRepeats { line: 12, .. }));
 }
 
 #[test]
 fn records_with_too_little_in_them_are_refused() {
     let few: String = simple().lines().take(7).map(|line| format!("{line}\n")).collect();
     let refusal = problem(few, &["6 of 6 rows", "at least 8"]);
-    assert!(matches!(refusal, Problem::TooShort { usable: 6, needed: 8, rows: 6 }));
+    assert!(matches!(refusal, ReadProblem::TooShort { usable: 6, needed: 8, rows: 6 }));
     let all_missing = |place: usize| {
         let text = simple();
         let lines = text.lines().skip(1).map(|line| {
@@ -249,7 +249,7 @@ fn records_with_too_little_in_them_are_refused() {
         format!("t_s,heading_deg,rudder_deg\n{}", lines.collect::<String>())
     };
     for (place, name) in [(0, "`t_s`"), (1, "`heading_deg`"), (2, "`rudder_deg`")] {
-        assert!(matches!(problem(all_missing(place), &[name, "no value"]), Problem::AllMissing { .. }));
+        assert!(matches!(problem(all_missing(place), &[name, "no value"]), ReadProblem::AllMissing { .. }));
     }
     let flipped =
         simple().lines().map(|line| line.rsplit_once(',').map_or("", |cells| cells.0).to_owned()).collect::<Vec<_>>();
@@ -260,7 +260,7 @@ fn records_with_too_little_in_them_are_refused() {
         .map(|(i, line)| if i == 0 { format!("{line},rudder_deg\n") } else { format!("{line},{}\n", -rows[i - 1][2]) })
         .collect();
     let refusal = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
-    assert!(matches!(refusal, Problem::Implausible(plausibility::Implausibility::RudderFlipped { .. })));
+    assert!(matches!(refusal, ReadProblem::Implausible(plausibility::Implausibility::RudderFlipped { .. })));
     // The remedy in the message is effective.
     let corrected = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
     assert_eq!(corrected.warnings, []);
@@ -307,7 +307,7 @@ fn a_hundred_million_rows_are_refused_before_they_are_read() {
     let refusal = complaint(result, &["more than 16666666 rows", "about 100000000", "every = 7", "from-s"]);
     assert!(matches!(
         refusal,
-        Problem::TooManyRows { limit: 16_666_666, columns: 3, estimate: Some(99_000_000..=110_000_000), every: 7 }
+        ReadProblem::TooManyRows { limit: 16_666_666, columns: 3, estimate: Some(99_000_000..=110_000_000), every: 7 }
     ));
     assert!(endless.total < size / 4, "{} of {size} bytes were read", endless.total);
     let wide = (0..100_000).map(|column| format!("c{column}")).collect::<Vec<_>>().join(",");
@@ -316,7 +316,7 @@ fn a_hundred_million_rows_are_refused_before_they_are_read() {
     for time in 0..503 {
         writeln!(text, "{time},2,3,{}", &row[..row.len() - 1]).expect("a string takes all text");
     }
-    assert!(matches!(problem(text, &["more than 499 rows"]), Problem::TooManyRows { limit: 499, .. }));
+    assert!(matches!(problem(text, &["more than 499 rows"]), ReadProblem::TooManyRows { limit: 499, .. }));
 }
 
 #[test]
@@ -337,9 +337,9 @@ fn a_sidecar_that_does_not_fit_its_table_is_named_with_its_line() {
     let headless = "[table]\nheader = false\nskip-lines = 1\n[[column]]\nindex = 3\nflip = true\n";
     assert!(matches!(fault(headless, 4, "`column_3`"), SidecarProblem::UnknownColumnName { .. }));
     let outside = parse_with(simple(), "[part]\nfrom-s = 1000\n");
-    assert!(matches!(complaint(outside, &["between 0 s and 239 s"]), Problem::EmptyPart { .. }));
+    assert!(matches!(complaint(outside, &["between 0 s and 239 s"]), ReadProblem::EmptyPart { .. }));
     let beyond = parse_with(simple(), "[table]\nskip-lines = 1000\n");
-    assert!(matches!(complaint(beyond, &["after line 241"]), Problem::NoRows { .. }));
+    assert!(matches!(complaint(beyond, &["after line 241"]), ReadProblem::NoRows { .. }));
 }
 
 #[test]
@@ -434,7 +434,8 @@ fn a_declared_calm_stays_with_the_record() {
     let first = trial.time()[0];
     assert!(trial.without_channels(&[Channel::YawRate]).without_current([0.1; 2]).without_headings(&[first]).is_calm());
     let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
-    let log = Log::from_reader(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
+    let log =
+        InstrumentLog::from_reader(Path::new("run.csv"), simple().as_bytes(), None, Some(&sidecar)).expect("complete");
     let part = log.into_interval(first, first + 50.0).expect("a part");
     assert!(part.into_trial(None).expect("a record").trial.is_calm());
 }

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use document::{Warning, WarningCode};
 use estimation::statistics::upper_median;
 
-use super::error::Problem;
-use super::source::Log;
+use super::error::ReadProblem;
+use super::source::InstrumentLog;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_RANGE_DEG_S, changes, count_reversals, mean_rate, range, wraps_at_two_pi_degrees};
@@ -59,11 +59,11 @@ pub(super) struct UnitlessColumn {
 /// Fails if the unit of the heading, the rudder or a yaw rate used for the heading is undetermined, or if the time
 /// cannot be in seconds.
 pub(super) fn infer_units(
-    log: &mut Log,
+    log: &mut InstrumentLog,
     mut open: Vec<UnitlessColumn>,
     open_time: Option<String>,
     line: usize,
-) -> Result<Vec<Warning>, Problem> {
+) -> Result<Vec<Warning>, ReadProblem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
     // The unit of the heading follows from the rudder, and the unit of the yaw rate from the heading.
@@ -95,7 +95,7 @@ pub(super) fn infer_units(
             }
             None if is_needed => {
                 let UnitlessColumn { channel, name: column, largest } = open.clone();
-                return Err(Problem::MissingUnit { line, column, quantity: channel.label(), largest, channel });
+                return Err(ReadProblem::MissingUnit { line, column, quantity: channel.label(), largest, channel });
             }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
@@ -207,7 +207,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
 
 /// Determines the unit of a time column without a unit: a count since 1970 or 1899, or seconds if ships can turn at
 /// such rates. Returns the text of the warning; fails if the unit cannot be seconds.
-fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
+fn seconds(log: &mut InstrumentLog, name: &str, line: usize) -> Result<String, ReadProblem> {
     let name = shortened(name);
     let times = &mut log.columns.time;
     let first = times[0];
@@ -226,7 +226,7 @@ fn seconds(log: &mut Log, name: &str, line: usize) -> Result<String, Problem> {
             "`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row"
         ));
     }
-    let refusal = || Problem::MissingTimeUnit { line, column: name.clone() };
+    let refusal = || ReadProblem::MissingTimeUnit { line, column: name.clone() };
     let channels = &log.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
         let rate_deg_s = mean_rate(times, heading).to_degrees();

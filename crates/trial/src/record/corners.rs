@@ -17,9 +17,9 @@ const ROW_TOLERANCE: f64 = 1e-6;
 
 /// Instant between two rows at which the rudder changes its rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Corner {
+pub struct RudderCorner {
     /// Row before the corner.
-    pub row: usize,
+    pub row_before: usize,
     /// Time, s.
     pub time: f64,
     /// Rudder rate from the row to the corner, rad/s.
@@ -34,7 +34,7 @@ pub(super) struct RecordedRudder {
     /// Rudder angle at the rows.
     pub rows: Polyline,
     /// Corners between the rows.
-    pub corners: Vec<Corner>,
+    pub corners: Vec<RudderCorner>,
     /// Rows and corners together; `None` without corners.
     path: Option<Polyline>,
 }
@@ -54,14 +54,14 @@ impl RecordedRudder {
 }
 
 /// Rows with the corners between them; `None` if a corner is not between its rows.
-fn through(rows: &Polyline, corners: &[Corner]) -> Option<Polyline> {
+fn through(rows: &Polyline, corners: &[RudderCorner]) -> Option<Polyline> {
     let points = rows.times().len() + corners.len();
     let (mut time, mut angle) = (Vec::with_capacity(points), Vec::with_capacity(points));
     let mut corners = corners.iter().peekable();
     for (row, (&t, &delta)) in rows.times().iter().zip(rows.values()).enumerate() {
         time.push(t);
         angle.push(delta);
-        if let Some(corner) = corners.next_if(|corner| corner.row == row) {
+        if let Some(corner) = corners.next_if(|corner| corner.row_before == row) {
             time.push(corner.time);
             angle.push(delta + corner.rate_before * (corner.time - t));
         }
@@ -84,7 +84,7 @@ enum Piece {
 /// rates of the neighbouring intervals; if a neighbour is bent itself, the rudder moves in it at the rate of the gear.
 /// Empty if the rudder has no constant rate: noise, whole degrees, another kind of steering. A stroke that begins
 /// and ends between the same two rows is not detected.
-fn corners(rudder: &Polyline) -> Vec<Corner> {
+fn corners(rudder: &Polyline) -> Vec<RudderCorner> {
     let (time, angle) = (rudder.times(), rudder.values());
     let slopes: Vec<f64> =
         time.windows(2).zip(angle.windows(2)).map(|(t, delta)| (delta[1] - delta[0]) / (t[1] - t[0])).collect();
@@ -105,7 +105,7 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
         return Vec::new();
     }
     let bent: Vec<usize> = (1..pieces.len().saturating_sub(1)).filter(|&row| pieces[row] == Piece::Bent).collect();
-    let corners: Vec<Corner> = (bent.iter())
+    let corners: Vec<RudderCorner> = (bent.iter())
         .filter_map(|&row| {
             let (duration, step) = (time[row + 1] - time[row], angle[row + 1] - angle[row]);
             let moving = rate.copysign(step);
@@ -121,8 +121,8 @@ fn corners(rudder: &Polyline) -> Vec<Corner> {
             }
             let elapsed = (step - after * duration) / (before - after);
             let inside = ROW_TOLERANCE * duration..=(1.0 - ROW_TOLERANCE) * duration;
-            inside.contains(&elapsed).then(|| Corner {
-                row,
+            inside.contains(&elapsed).then(|| RudderCorner {
+                row_before: row,
                 time: time[row] + elapsed,
                 rate_before: before,
                 rate_after: after,
@@ -173,7 +173,7 @@ mod tests {
             assert_eq!(located.len(), expected.clone().count(), "{period}: {located:?}");
             for (corner, (t, _)) in located.iter().zip(expected) {
                 assert_abs_diff_eq!(corner.time, *t, epsilon = 1e-9);
-                assert_eq!(corner.row, (t / period) as usize);
+                assert_eq!(corner.row_before, (t / period) as usize);
             }
         }
     }

@@ -64,7 +64,7 @@ mod tests {
         ];
         let trial_in = |wind: [(Channel, Vec<f64>); 2]| {
             let channels = ship.clone().into_iter().chain(wind).collect();
-            let columns = Columns { time: rows.clone(), channels, unknown: Vec::new() };
+            let columns = Columns { time: rows.clone(), channels, unknown_columns: Vec::new() };
             let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
             Trial::new("run", origin, columns).expect("a record")
         };

@@ -6,7 +6,7 @@
 use document::Quantity;
 use ship::angle::{from_deg, to_deg};
 
-use super::executes::{Movement, RudderMovements};
+use super::executes::{RudderMovement, RudderMovements};
 use super::findings::{
     BaseCourse, BaseCourseSource, Execute, NominalAngles, Overshoot, Side, ZigZag, ZigZagError, period,
 };
@@ -53,8 +53,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
     let holds = holds::holds(trial.rudder())?;
     let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder_sd);
-    let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
-    let (opening, closing) = (movements[0].start.value, movements[movements.len() - 1].start.value);
+    let movements: Vec<RudderMovement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
+    let (opening, closing) = (movements[0].start_time.value, movements[movements.len() - 1].start_time.value);
     let rough_period = 2.0 * (closing - opening) / (movements.len() - 1) as f64;
     // A record has at least as many headings as a `Heading` requires.
     let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading_sd)
@@ -63,12 +63,12 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
         movements.iter().map(|movement| execute(movement, &heading)).collect::<Result<_, _>>()?;
     check_direction(&executes)?;
 
-    let end = time[holds[holds.len() - 1].last];
+    let end = time[holds[holds.len() - 1].last_row];
     let largest_rate_of_swings = heading.largest_rate(executes[0].time.value, end);
     let middle = middle_course(&executes);
-    let first = rudder
-        .first_movement()
-        .filter(|movement| starts_straight(movement.start.value, &heading, &executes, middle, largest_rate_of_swings));
+    let first = rudder.first_movement().filter(|movement| {
+        starts_straight(movement.start_time.value, &heading, &executes, middle, largest_rate_of_swings)
+    });
     let base_course = match &first {
         None => BaseCourse { heading: middle, source: BaseCourseSource::Executes },
         Some(movement) => approach_course(trial, movement, &holds[0], &heading),
@@ -110,8 +110,8 @@ fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     })
 }
 
-fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagError> {
-    let time = movement.start;
+fn execute(movement: &RudderMovement, heading: &Heading) -> Result<Execute, ZigZagError> {
+    let time = movement.start_time;
     let psi = heading
         .heading_at(time.value)
         .ok_or(ZigZagError::NoHeading { time: time.value, reach: heading.widest_half_width() })?;
@@ -122,8 +122,8 @@ fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagErro
         time,
         heading: Quantity { value: psi.value + heading.origin, ..psi.widened(timing.or(Some(0.0))) },
         yaw_rate,
-        rudder_before: movement.before,
-        rudder_after: movement.after,
+        rudder_before: movement.rudder_before,
+        rudder_after: movement.rudder_after,
     })
 }
 
@@ -179,9 +179,10 @@ fn starts_straight(
 }
 
 /// `true` if the record begins within the movement of the first execute.
-fn begins_moving(first: &Movement, holds: &[Hold]) -> bool {
-    let amidships = 0.5 * (holds[0].level + holds[1].level);
-    first.foot == 0 && (first.before - amidships).abs() > MIN_BEGUN_SHARE * holds[0].level.abs()
+fn begins_moving(first: &RudderMovement, holds: &[Hold]) -> bool {
+    let amidships = 0.5 * (holds[0].median_angle + holds[1].median_angle);
+    first.last_row_before == 0
+        && (first.rudder_before - amidships).abs() > MIN_BEGUN_SHARE * holds[0].median_angle.abs()
 }
 
 /// `true` if the headings begin at least half a fit before an execute: a one-sided fit misses the bend there.
@@ -197,11 +198,13 @@ fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> O
 }
 
 /// Base course of a record with its first execute.
-fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Heading) -> BaseCourse {
-    let tolerance = STEADY_RUDDER * hold.level.abs();
-    let moved = trial.rudder()[..=first.foot].iter().rposition(|delta| (delta - first.before).abs() > tolerance);
+fn approach_course(trial: &Trial, first: &RudderMovement, hold: &Hold, heading: &Heading) -> BaseCourse {
+    let tolerance = STEADY_RUDDER * hold.median_angle.abs();
+    let moved = trial.rudder()[..=first.last_row_before]
+        .iter()
+        .rposition(|delta| (delta - first.rudder_before).abs() > tolerance);
     let from = moved.map_or(trial.time()[0], |row| trial.time()[row]);
-    let rows = heading.rows(from, first.start.value);
+    let rows = heading.rows(from, first.start_time.value);
     let n = rows.len();
     if n < MIN_APPROACH_ROWS {
         let heading = Quantity::new(heading.origin + heading.relative[0], heading.noise_sd);
@@ -226,7 +229,7 @@ fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Opti
     }
     let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));
     let heading = from_deg(holds::conventional_deg(angle, 0.05, 0.25, slack)?);
-    let held = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
+    let held = holds.iter().map(|hold| hold.median_angle.abs()).sum::<f64>() / holds.len() as f64;
     Some(NominalAngles { rudder: from_deg(holds::conventional_deg(to_deg(held), 0.08, 0.08, 0.0)?), heading })
 }
 

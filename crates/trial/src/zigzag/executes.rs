@@ -12,15 +12,15 @@ const MIN_MOVING: (f64, f64) = (4.0, 0.01);
 
 /// Movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Movement {
+pub struct RudderMovement {
     /// Time at which the rudder starts to move, s.
-    pub start: Quantity,
+    pub start_time: Quantity,
     /// Rudder angle before, rad: median of the rows just before the start.
-    pub before: f64,
+    pub rudder_before: f64,
     /// Rudder angle after, rad: median of the hold.
-    pub after: f64,
+    pub rudder_after: f64,
     /// Last row at the level before.
-    pub foot: usize,
+    pub last_row_before: usize,
     /// Rate of the rudder, rad/s, signed; `None` with fewer than two rows on its ramp, or if their line runs backwards.
     pub rate: Option<f64>,
     /// Lower bound of the rate of a movement with a single row on its ramp, rad/s; otherwise `None`.
@@ -65,7 +65,7 @@ impl<'a> RudderMovements<'a> {
         let noise = declared_noise.unwrap_or_else(|| {
             let mut steps: Vec<f64> = holds
                 .iter()
-                .flat_map(|hold| angle[hold.first..=hold.last].windows(2))
+                .flat_map(|hold| angle[hold.first_row..=hold.last_row].windows(2))
                 .map(|pair| (pair[1] - pair[0]).abs())
                 .collect();
             // A step between rows contains the noise of both.
@@ -73,7 +73,7 @@ impl<'a> RudderMovements<'a> {
         });
         let noise = noise.max(quantum(angle) / 12.0_f64.sqrt());
         let mut rudder = Self { time, angle, holds, noise_sd: noise, rate: None, rate_is_bound: false };
-        let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
+        let reversals: Vec<RudderMovement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
         let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
         // If most reversals have a single row on the ramp, a ramp is about as long as a sampling interval, and the
         // tightest bound is near the rate. If few have, ramps are much shorter and the rate remains unknown.
@@ -85,18 +85,18 @@ impl<'a> RudderMovements<'a> {
     }
 
     /// Movement into hold `index` from the previous hold; `index` is 1 or more.
-    pub fn reversal(&self, index: usize) -> Movement {
+    pub fn reversal(&self, index: usize) -> RudderMovement {
         let (from, to) = (&self.holds[index - 1], &self.holds[index]);
-        let foot = self.foot(from.level, to);
-        let window = 0.25 * (self.time[from.last] - self.time[from.first]);
+        let foot = self.foot(from.median_angle, to);
+        let window = 0.25 * (self.time[from.last_row] - self.time[from.first_row]);
         // The foot may already be moving: in a short hold such rows would distort the level.
-        let way = to.level - from.level;
+        let way = to.median_angle - from.median_angle;
         let is_under_way = |row: usize| {
             let step = (self.angle[row] - self.angle[row - 1]) * way.signum();
             step > (MIN_MOVING.0 * self.noise_sd).max(MIN_MOVING.1 * way.abs())
         };
-        let mut row = foot.min(from.last);
-        while row > from.first && is_under_way(row) {
+        let mut row = foot.min(from.last_row);
+        while row > from.first_row && is_under_way(row) {
             row -= 1;
         }
         let first = self.time.partition_point(|&t| t < self.time[row] - window).min(row);
@@ -105,22 +105,22 @@ impl<'a> RudderMovements<'a> {
     }
 
     /// Movement into the first hold from the steering before it; `None` if the record starts in the hold.
-    pub fn first_movement(&self) -> Option<Movement> {
+    pub fn first_movement(&self) -> Option<RudderMovement> {
         let to = &self.holds[0];
-        if to.first == 0 {
+        if to.first_row == 0 {
             return None;
         }
         // The search goes back along the steep part: manual steering may already have moved the rudder to the same
         // side.
-        let steps = (self.time[to.first] - self.time[0]) / to.first as f64;
-        let rate = self.rate.unwrap_or(2.0 * to.level.abs() / steps);
+        let steps = (self.time[to.first_row] - self.time[0]) / to.first_row as f64;
+        let rate = self.rate.unwrap_or(2.0 * to.median_angle.abs() / steps);
         // Minimum length at which a ramp exceeds the noise.
-        let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise_sd) / rate;
-        let mut row = to.first;
+        let look_back = (0.2 * to.median_angle.abs()).max(8.0 * self.noise_sd) / rate;
+        let mut row = to.first_row;
         while row > 0 {
             let earlier = row_before(self.time, row, look_back).min(row - 1);
             let gain = to.side * (self.angle[row] - self.angle[earlier]);
-            let steep = (0.3 * rate * (self.time[row] - self.time[earlier])).min(0.15 * to.level.abs());
+            let steep = (0.3 * rate * (self.time[row] - self.time[earlier])).min(0.15 * to.median_angle.abs());
             if gain < steep {
                 break;
             }
@@ -129,7 +129,7 @@ impl<'a> RudderMovements<'a> {
         // The lookback ends a little after the true foot. The angle just before it is used, not the mean of the
         // steering before.
         let clear = row_before(self.time, row, 0.3 * look_back);
-        let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise_sd);
+        let tolerance = (0.1 * to.median_angle.abs()).max(5.0 * self.noise_sd);
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
         let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
         Some(self.movement(Level::from_rows(&mut steady)?, to))
@@ -137,19 +137,19 @@ impl<'a> RudderMovements<'a> {
 
     /// Last row before a hold at which the rudder has moved at most a tenth of the way from `before`.
     fn foot(&self, before: f64, to: &Hold) -> usize {
-        (0..to.first).rev().find(|&row| progress(self.angle[row], before, to.level) <= 0.1).unwrap_or(0)
+        (0..to.first_row).rev().find(|&row| progress(self.angle[row], before, to.median_angle) <= 0.1).unwrap_or(0)
     }
 
     /// Movement from a level into a hold. It starts at the intersection of the line through its ramp with the level, as
     /// far as the sampling resolves the ramp.
-    fn movement(&self, level: Level, to: &Hold) -> Movement {
+    fn movement(&self, level: Level, to: &Hold) -> RudderMovement {
         let before = level.angle;
         let foot = self.foot(before, to);
-        let (earliest, latest) = (self.time[foot], self.time[to.first]);
-        let ramp: Vec<usize> = (foot + 1..=to.first)
-            .filter(|&row| (0.1..0.9).contains(&progress(self.angle[row], before, to.level)))
+        let (earliest, latest) = (self.time[foot], self.time[to.first_row]);
+        let ramp: Vec<usize> = (foot + 1..=to.first_row)
+            .filter(|&row| (0.1..0.9).contains(&progress(self.angle[row], before, to.median_angle)))
             .collect();
-        let travel = to.level - before;
+        let travel = to.median_angle - before;
         let mut least_rate = None;
         let (start, rate) = match (ramp.as_slice(), self.rate) {
             ([_, _, ..], _) => match self.line_start(&ramp, level, travel.signum()) {
@@ -183,7 +183,14 @@ impl<'a> RudderMovements<'a> {
         };
         // Noise can shift the foot of a line far; the rudder did not move before the record or after it was laid.
         let start = Quantity { value: start.value.clamp(self.time[0], latest), ..start };
-        Movement { start, before, after: to.level, foot, rate, least_rate }
+        RudderMovement {
+            start_time: start,
+            rudder_before: before,
+            rudder_after: to.median_angle,
+            last_row_before: foot,
+            rate,
+            least_rate,
+        }
     }
 
     /// Least-squares line through the rows of a ramp: the time at which it leaves `level`, and its rate (rad/s,
@@ -257,8 +264,8 @@ mod tests {
     fn starts(time: &[f64], rudder: &[f64]) -> Vec<Quantity> {
         let holds = holds(rudder).expect("two reversals");
         let rudder = RudderMovements::new(time, rudder, &holds, None);
-        let first = rudder.first_movement().expect("starts before the hold").start;
-        std::iter::once(first).chain((1..holds.len()).map(|index| rudder.reversal(index).start)).collect()
+        let first = rudder.first_movement().expect("starts before the hold").start_time;
+        std::iter::once(first).chain((1..holds.len()).map(|index| rudder.reversal(index).start_time)).collect()
     }
 
     #[test]

@@ -23,11 +23,11 @@ pub struct Hold {
     /// +1 starboard, −1 port.
     pub side: f64,
     /// First row beyond [`MIN_HOLD_ANGLE_SHARE`] of the level.
-    pub first: usize,
+    pub first_row: usize,
     /// Last row beyond [`MIN_HOLD_ANGLE_SHARE`] of the level.
-    pub last: usize,
+    pub last_row: usize,
     /// Median rudder angle, rad, signed.
-    pub level: f64,
+    pub median_angle: f64,
 }
 
 /// Holds of a record, alternating between the sides.
@@ -51,8 +51,8 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
     for (row, &delta) in rudder.iter().enumerate() {
         let Some(side) = side_of(delta) else { continue };
         match holds.last_mut() {
-            Some(hold) if hold.side == side => hold.last = row,
-            _ => holds.push(Hold { side, first: row, last: row, level: 0.0 }),
+            Some(hold) if hold.side == side => hold.last_row = row,
+            _ => holds.push(Hold { side, first_row: row, last_row: row, median_angle: 0.0 }),
         }
     }
     let reversals = holds.len().saturating_sub(1);
@@ -60,10 +60,10 @@ pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
         return Err(ZigZagError::TooFewReversals { reversals, needed: 2 });
     }
     for hold in &mut holds {
-        hold.level =
-            median(&mut rudder[hold.first..=hold.last].to_vec()).expect("a hold has at least the row it began with");
+        hold.median_angle = median(&mut rudder[hold.first_row..=hold.last_row].to_vec())
+            .expect("a hold has at least the row it began with");
     }
-    let span = &rudder[holds[0].first..=holds[reversals].last];
+    let span = &rudder[holds[0].first_row..=holds[reversals].last_row];
     let held = span
         .iter()
         .filter(|&&delta| {
@@ -133,8 +133,9 @@ mod tests {
         rudder[80] = 0.05;
         rudder[100] = -0.6;
         let all = holds(&rudder).expect("two reversals");
-        let rows: Vec<(f64, usize, usize)> = all.iter().map(|hold| (hold.side, hold.first, hold.last)).collect();
+        let rows: Vec<(f64, usize, usize)> =
+            all.iter().map(|hold| (hold.side, hold.first_row, hold.last_row)).collect();
         assert_eq!(rows, [(1.0, 30, 69), (-1.0, 70, 119), (1.0, 120, 159)]);
-        assert_eq!(all[1].level, -0.21);
+        assert_eq!(all[1].median_angle, -0.21);
     }
 }

@@ -6,8 +6,8 @@ use ship::FirstOrder;
 
 use super::*;
 use crate::benchmark::BenchDocument;
-use crate::collect::in_memory;
-use crate::scenario::STRAIGHT_ON;
+use crate::collect::collect_in_memory;
+use crate::scenario::STRAIGHT_ON_ID;
 use crate::testing::scenario;
 
 /// A first-order ship, recorded without error, validated on the opposite side and on a circle.
@@ -70,7 +70,7 @@ static RESULTS: LazyLock<BenchDocument> = LazyLock::new(|| {
         for (label, indices) in [("perfect", Some([0.1, 20.0])), ("slow", Some([0.1, 24.0])), ("silent", None)] {
             study = study.with_identifier(label, Arc::new(KnownIndices(indices))).unwrap_or_else(|e| panic!("{e}"));
         }
-        let (_, rows) = in_memory(&study);
+        let (_, rows) = collect_in_memory(&study);
         (study, rows)
     });
     BenchDocument::from_studies(&studies, &[])
@@ -89,13 +89,13 @@ fn scores_are_what_the_models_are_worth() {
         assert!(median("slow") > 0.1, "{:?}: {}", board.task, median("slow"));
         match board.task {
             BenchTask::Indices => {
-                assert!(of(STRAIGHT_ON).is_none(), "it has no K and no T");
+                assert!(of(STRAIGHT_ON_ID).is_none(), "it has no K and no T");
                 let slow = of("slow").expect("it answers");
                 assert!((median("slow") - 20.0).abs() < 1e-9, "T is 24 s where it is 20 s");
                 let holds = slow.coverage.expect("intervals").map(|share| (share.count, share.cases));
                 assert_eq!(holds, [(2, 2), (0, 2)], "K is inside, 20 s is not within 24 s ± 10 %");
             }
-            _ => assert!(median(STRAIGHT_ON) > 2.0 * median("slow"), "{:?}", board.task),
+            _ => assert!(median(STRAIGHT_ON_ID) > 2.0 * median("slow"), "{:?}", board.task),
         }
         assert_eq!((board.cases, board.clusters), (2, 2), "a trial is asked once, whatever judges it");
         let silent = board.standings.last().expect("a standing");

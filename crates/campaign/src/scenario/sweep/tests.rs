@@ -37,7 +37,7 @@ fn points_can_be_told_apart() {
     assert_eq!([&near.points[0].label, &near.points[1].label], ["1.00001", "1.00002"]);
     assert!(axis("key = \"a\"\nvalues = [1, 1.0]").is_err(), "the same value twice");
     let once = axis("key = \"a\"\nvalues = [1]").expect("one value");
-    assert!(product(&[once.clone(), once]).is_err(), "the same key twice");
+    assert!(combine_points(&[once.clone(), once]).is_err(), "the same key twice");
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn cells_are_the_product_in_order() {
     let named = axis("name = \"trial\"\npoints = [{ label = \"p\", set = { \"m.r\" = 10, \"m.h\" = 20 } }, { label = \"q\", set = {} }]")
         .expect("valid");
     let axes = [two, named];
-    let cells = product(&axes).expect("few");
+    let cells = combine_points(&axes).expect("few");
     let labels: Vec<Vec<&str>> =
         cells.iter().map(|cell| cell.iter().map(|point| point.label.as_str()).collect()).collect();
     assert_eq!(labels, [["1", "p"], ["1", "q"], ["2", "p"], ["2", "q"]]);
@@ -55,7 +55,7 @@ fn cells_are_the_product_in_order() {
 #[test]
 fn sets_keys_in_tables_and_arrays() {
     let mut document: Table = "x = 1\n[[identifier]]\nsrivc = {}".parse().expect("well formed");
-    let mut set = |key: &str, value: Value| super::set(&mut document, &KeyPath::from_dotted(key), value);
+    let mut set = |key: &str, value: Value| super::set_key(&mut document, &KeyPath::from_dotted(key), value);
     set("sensor.noise", Value::Float(0.5)).expect("makes the table");
     set("identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
     assert!(set("x.y", Value::Integer(1)).is_err());

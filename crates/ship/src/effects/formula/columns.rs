@@ -14,11 +14,11 @@ impl ColumnFormula {
     }
 
     /// Column names in the order of their first use.
-    pub fn names(&self) -> &[String] {
+    pub fn column_names(&self) -> &[String] {
         &self.0.constants
     }
 
-    /// Value of the formula; `values` belong to [`names`](Self::names), in their order.
+    /// Value of the formula; `values` belong to [`column_names`](Self::column_names), in their order.
     pub fn value(&self, values: &[f64]) -> f64 {
         self.0.value(values, |_| f64::NAN)
     }
@@ -31,7 +31,7 @@ mod tests {
     #[test]
     fn columns_are_names_whatever_they_mean_in_an_effect() {
         let formula = ColumnFormula::parse("(port - delta) / 2 + r").expect("a formula");
-        assert_eq!(formula.names(), ["port", "delta", "r"]);
+        assert_eq!(formula.column_names(), ["port", "delta", "r"]);
         assert_eq!(formula.value(&[10.0, -6.0, 0.5]), 8.5);
         assert!(ColumnFormula::parse("(port - ").is_err());
     }

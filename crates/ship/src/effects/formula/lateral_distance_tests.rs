@@ -2,7 +2,7 @@
 
 use super::tests::manoeuvres;
 use super::*;
-use crate::dynamics::{Dynamics, Input};
+use crate::dynamics::{Dynamics, ShipInput};
 use crate::number::Tangent;
 use crate::replay::{RecordedSignals, replay_states};
 use crate::replayable::Replayable;
@@ -74,7 +74,7 @@ fn only_the_course_at_the_start_matters() {
     let mut state = vec![0.3, 0.01, 40.0, 0.1];
     ship.reset_motion(0.5, -0.02, &mut state);
     assert_eq!(state, [0.5, -0.02, 40.0, 0.1]);
-    let input = Input { rudder: 0.1, ..Input::default() };
+    let input = ShipInput { rudder: 0.1, ..ShipInput::default() };
     let mut rate = vec![0.0; 4];
     ship.rates(0.0, &state, &input, &mut rate);
     let moment = -3e-4 * 40.0;
@@ -115,7 +115,7 @@ fn a_way_is_in_one_unit_in_all_records() {
     for (speed, way) in [(None, [1.0, 1.0]), (Some(7.0), [7.0, 0.0])] {
         let formula = Formula::parse("bank = c * y").expect("a formula");
         let CandidateEffect { effect, priors } =
-            formula.candidate(&RecordScales { speed, ..manoeuvres() }).expect("any record will do");
+            formula.candidate(&RecordScales { approach_speed: speed, ..manoeuvres() }).expect("any record will do");
         let constants: Vec<f64> = effect.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!(constants, way);
         assert!((priors[0].sd * way[0] / 6e-3 - 1.0).abs() < 0.2, "{priors:?}");

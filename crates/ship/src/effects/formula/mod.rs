@@ -17,9 +17,10 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use estimation::number::Real;
 
 use super::effect::{
-    CandidateEffect, Description, Effect, EffectEquations, EffectTarget, OperatingPoint, Prior, RecordScales,
+    CandidateEffect, Effect, EffectDescription, EffectEquations, EffectTarget, OperatingPoint, ParameterPrior,
+    RecordScales,
 };
-use crate::dynamics::{MeasuredChannels, Regressor};
+use crate::dynamics::{MeasuredChannels, RegressorChannel};
 use crate::particulars::Dimension;
 pub use columns::ColumnFormula;
 use expectation::{Expectation, expectations};
@@ -60,7 +61,7 @@ impl MirrorSymmetry {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ListedFormula {
     /// Description, with the constants in the order in which the formula names them.
-    pub(super) description: Description,
+    pub(super) description: EffectDescription,
     /// [`EffectTarget::RUDDER`] for the acting rudder, from `delta` alone, rad; [`EffectTarget::MOMENT`] for a yaw
     /// acceleration, rad/s²: `K_over_T` times the moment as equivalent rudder angle.
     pub(super) acts_on: EffectTarget,
@@ -79,10 +80,10 @@ pub(super) type ListedPrior = fn(&RecordScales) -> Option<[f64; 3]>;
 #[derive(Debug, Clone)]
 pub struct Formula {
     program: FormulaProgram,
-    description: Description,
+    description: EffectDescription,
     acts_on: EffectTarget,
     /// Measured channels that it requires.
-    channels: Vec<Regressor>,
+    channels: Vec<RegressorChannel>,
     record_constants: RecordConstants,
     /// Row of the list; `None` for the formula of a user.
     listed: Option<ListedFormula>,
@@ -146,7 +147,7 @@ impl Formula {
         Self { acts_on: row.acts_on, listed: Some(*row), ..Self::from_program(program, row.description) }
     }
 
-    fn from_program(program: FormulaProgram, description: Description) -> Self {
+    fn from_program(program: FormulaProgram, description: EffectDescription) -> Self {
         Self {
             channels: program.channels(),
             program,
@@ -183,7 +184,7 @@ impl Formula {
             .map_err(|problem| error(formula.chars().count() + 1, problem))?;
         let leaked = |text: String| -> &'static str { text.leak() };
         let equation = leaked(format!("T r' + r = K (δ + δ_r + {})", formula.trim()));
-        let untitled = Description { id: "", form: "", equation, parameters: &[] };
+        let untitled = EffectDescription { id: "", form: "", equation, parameters: &[] };
         let mut effect = Self { expected, ..Self::from_program(program, untitled) };
         effect.is_size = effect.amplitude_flags();
         if !effect.can_be_absent() {
@@ -192,7 +193,7 @@ impl Formula {
         }
         let (id, form) = (leaked(name.to_owned()), leaked(text.to_owned()));
         effect.description =
-            Description { id, form, parameters: effect.derived_parameters().leak(), ..effect.description };
+            EffectDescription { id, form, parameters: effect.derived_parameters().leak(), ..effect.description };
         Ok(effect)
     }
 
@@ -210,8 +211,8 @@ impl Formula {
     }
 
     /// `true` if, without this measured channel, the formula is zero or one of its signals is constant.
-    pub fn is_inactive_without(&self, channel: Regressor) -> bool {
-        self.channels.contains(&channel) || channel == Regressor::Speed && self.has(FormulaSignal::SpeedRatio)
+    pub fn is_inactive_without(&self, channel: RegressorChannel) -> bool {
+        self.channels.contains(&channel) || channel == RegressorChannel::Speed && self.has(FormulaSignal::SpeedRatio)
     }
 
     fn has(&self, signal: FormulaSignal) -> bool {
@@ -226,30 +227,32 @@ impl Formula {
 }
 
 impl Effect for Formula {
-    fn description(&self) -> Description {
+    fn description(&self) -> EffectDescription {
         self.description
     }
 
     fn candidate(&self, records: &RecordScales) -> Option<CandidateEffect> {
         let has = |channel| match channel {
-            Regressor::Speed => records.speed.is_some(),
-            Regressor::Sway => records.approach_speed_for_sway.is_some(),
-            Regressor::Wind => records.mean_square_wind_speed.is_some(),
-            Regressor::Propeller => records.rms_propeller_rate.is_some(),
+            RegressorChannel::Speed => records.approach_speed.is_some(),
+            RegressorChannel::Sway => records.approach_speed_for_sway.is_some(),
+            RegressorChannel::Wind => records.mean_square_wind_speed.is_some(),
+            RegressorChannel::Propeller => records.rms_propeller_rate.is_some(),
         };
         if !self.channels.iter().copied().all(has) {
             return None;
         }
         let SignalScales { speed, length, .. } = SignalScales::from_records(records);
-        let is_always = f64::from(u8::from(records.speed.is_none()));
-        let record_constants = [speed, records.span[0], length, lateral_distance_speed(records), is_always];
+        let is_always = f64::from(u8::from(records.approach_speed.is_none()));
+        let record_constants = [speed, records.time_span[0], length, lateral_distance_speed(records), is_always];
         let effect = Self { record_constants, ..self.clone() };
         let priors = match effect.listed {
             None => effect.derived_priors(records)?,
             Some(row) => {
                 let [mean, sd, largest] = (row.prior)(records)?;
                 let parameters = effect.description.parameters.iter();
-                parameters.map(|p| Prior::normal(p, mean, sd).within([p.lowest, p.highest.min(largest)])).collect()
+                parameters
+                    .map(|p| ParameterPrior::normal(p, mean, sd).within([p.lowest, p.highest.min(largest)]))
+                    .collect()
             }
         };
         Some(CandidateEffect::new(effect, priors))
@@ -259,12 +262,13 @@ impl Effect for Formula {
         self.acts_on
     }
 
-    fn needs(&self) -> Option<Regressor> {
+    fn needs(&self) -> Option<RegressorChannel> {
         self.channels.first().copied()
     }
 
-    fn uses(&self, channel: Regressor) -> bool {
-        self.is_inactive_without(channel) || channel == Regressor::Speed && self.has(FormulaSignal::LateralDistance)
+    fn uses(&self, channel: RegressorChannel) -> bool {
+        self.is_inactive_without(channel)
+            || channel == RegressorChannel::Speed && self.has(FormulaSignal::LateralDistance)
     }
 
     /// Two states for a formula with the lateral distance: the distance y, and the initial course ψ₀.
@@ -277,8 +281,12 @@ impl Effect for Formula {
     }
 
     fn with_constants(&self, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+        let places: Vec<usize> = self.taken().collect();
+        if places.len() != constants.len() {
+            return None;
+        }
         let mut effect = self.clone();
-        self.taken().zip(constants).for_each(|(place, value)| effect.record_constants[place] = *value);
+        places.into_iter().zip(constants).for_each(|(place, value)| effect.record_constants[place] = *value);
         Some(Arc::new(effect))
     }
 

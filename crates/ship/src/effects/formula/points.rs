@@ -32,9 +32,10 @@ impl SignalScales {
         }
     }
 
-    /// Scales in records: r L/U of a zig-zag is about 0.3, K′/T′ about 1, y/L about three times the rudder.
+    /// Magnitudes of the signals in records: r L/U = 0.3, K′/T′ = 1 and y/L = 3 δ_max are usual in zig-zags; the other
+    /// magnitudes are those of the records. A quantity that the records do not have has the magnitude 1.
     pub(super) fn from_records(records: &RecordScales) -> Self {
-        let speed = records.speed.or(records.approach_speed_for_sway).unwrap_or(1.0);
+        let speed = records.approach_speed.or(records.approach_speed_for_sway).unwrap_or(1.0);
         Self {
             yaw_rate: 0.3 / records.ship_length_time,
             rudder: records.max_rudder,
@@ -51,7 +52,7 @@ impl SignalScales {
 
 /// Speed in the rate of the lateral distance, m/s; 1 if a record has no measured speed.
 pub(super) fn lateral_distance_speed(records: &RecordScales) -> f64 {
-    records.speed.unwrap_or(1.0)
+    records.approach_speed.unwrap_or(1.0)
 }
 
 /// Sample point: a value of every signal.

@@ -3,7 +3,7 @@
 
 use estimation::number::Real;
 
-use crate::dynamics::{MeasuredChannels, Regressor};
+use crate::dynamics::{MeasuredChannels, RegressorChannel};
 use crate::effects::effect::OperatingPoint;
 use crate::particulars::Dimension;
 
@@ -86,13 +86,13 @@ impl FormulaSignal {
     ];
 
     /// Measured channels that the signal requires.
-    pub(super) fn channels(self) -> &'static [Regressor] {
+    pub(super) fn channels(self) -> &'static [RegressorChannel] {
         match self {
-            Self::Sway => &[Regressor::Sway],
-            Self::Surge | Self::PrimeSway => &[Regressor::Sway, Regressor::Speed],
-            Self::Speed | Self::PrimeYawRate => &[Regressor::Speed],
-            Self::Propeller => &[Regressor::Propeller],
-            Self::WindSpeed | Self::WindAngle => &[Regressor::Wind],
+            Self::Sway => &[RegressorChannel::Sway],
+            Self::Surge | Self::PrimeSway => &[RegressorChannel::Sway, RegressorChannel::Speed],
+            Self::Speed | Self::PrimeYawRate => &[RegressorChannel::Speed],
+            Self::Propeller => &[RegressorChannel::Propeller],
+            Self::WindSpeed | Self::WindAngle => &[RegressorChannel::Wind],
             _ => &[],
         }
     }
@@ -105,7 +105,7 @@ impl FormulaSignal {
         z: &[R],
         &[approach_speed, start, length, ..]: &RecordConstants,
     ) -> R {
-        let MeasuredChannels { speed, sway, wind_speed, wind_from, propeller } = *now.measured;
+        let MeasuredChannels { speed, sway, wind_speed, wind_from, propeller_rate: propeller } = *now.measured;
         let value = |channel: Option<f64>| channel.unwrap_or(f64::NAN);
         let constant = |channel: Option<f64>| R::from(value(channel));
         match self {
@@ -285,8 +285,9 @@ pub struct FormulaProgram {
 
 impl FormulaProgram {
     /// Measured channels that its signals require, the sway first.
-    pub(super) fn channels(&self) -> Vec<Regressor> {
-        let all = [Regressor::Sway, Regressor::Speed, Regressor::Wind, Regressor::Propeller];
+    pub(super) fn channels(&self) -> Vec<RegressorChannel> {
+        let all =
+            [RegressorChannel::Sway, RegressorChannel::Speed, RegressorChannel::Wind, RegressorChannel::Propeller];
         all.into_iter().filter(|c| self.signals.iter().any(|signal| signal.channels().contains(c))).collect()
     }
 

@@ -4,7 +4,7 @@
 use super::points::{SignalPoint, SignalScales};
 use super::program::FormulaSignal;
 use super::{Formula, MirrorSymmetry};
-use crate::effects::effect::{Parameter, Prior, RecordScales};
+use crate::effects::effect::{Parameter, ParameterPrior, RecordScales};
 use crate::particulars::{self, Dimension};
 
 /// Bound of a constant without a given range.
@@ -66,13 +66,14 @@ impl Formula {
         let units = self.units(&shapes);
         let parameter = |place: usize| {
             let key = leaked(self.program.constants[place].clone());
-            let unit = units[place].map_or(Parameter::NO_UNIT, |dimension| leaked(particulars::unit(dimension)));
+            let unit =
+                units[place].map_or(Parameter::NO_UNIT, |dimension| leaked(particulars::dimension_unit(dimension)));
             let size = if self.is_size[place] { 0.01 } else { shapes[place] };
             let typical = self.expected[place].about.unwrap_or(size);
             let neutral = if self.is_size[place] { 0.0 } else { typical };
             let ends = self.expected[place].ends.unwrap_or([-UNBOUNDED, UNBOUNDED]);
             Parameter {
-                odd: self.is_size[place] && self.sides_of(place, &shapes) == MirrorSymmetry::Even,
+                is_odd: self.is_size[place] && self.sides_of(place, &shapes) == MirrorSymmetry::Even,
                 ..Parameter::even([key, key, unit], [neutral, typical], ends)
             }
         };
@@ -175,19 +176,19 @@ impl Formula {
     /// value, or else the value at which the root mean square of the moment is a fifth of the maximum rudder angle. A
     /// shape is normal about its start value, with half the magnitude of that value as standard deviation. `None` if a
     /// prior is not finite.
-    pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<Prior>> {
+    pub(super) fn derived_priors(&self, records: &RecordScales) -> Option<Vec<ParameterPrior>> {
         let scales = SignalScales::from_records(records);
         let shapes = self.shapes(&scales);
         let prior = |(place, parameter): (usize, &Parameter)| {
             if !self.is_size[place] {
-                return Prior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).as_shape();
+                return ParameterPrior::normal(parameter, shapes[place], 0.5 * shapes[place].abs()).as_shape();
             }
             let alone = self.with_size(Some(place), &shapes);
             let square = SignalPoint::all(&scales).map(|point| self.moment(&alone, &point).powi(2)).sum::<f64>();
             let usual = MOMENT_SHARE * records.max_rudder / (square / SignalPoint::COUNT as f64).sqrt();
-            Prior::normal(parameter, 0.0, self.expected[place].about.map_or(usual, f64::abs))
+            ParameterPrior::normal(parameter, 0.0, self.expected[place].about.map_or(usual, f64::abs))
         };
-        let priors: Vec<Prior> = self.description.parameters.iter().enumerate().map(prior).collect();
+        let priors: Vec<ParameterPrior> = self.description.parameters.iter().enumerate().map(prior).collect();
         priors.iter().all(|prior| prior.sd.is_finite() && prior.mean.is_finite()).then_some(priors)
     }
 }

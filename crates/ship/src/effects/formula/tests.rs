@@ -10,11 +10,11 @@ pub(super) fn manoeuvres() -> RecordScales {
         max_rudder: 0.35,
         duration: 600.0,
         row_interval: 1.0,
-        speed: Some(7.0),
+        approach_speed: Some(7.0),
         approach_speed_for_sway: Some(7.0),
         mean_square_wind_speed: None,
         rms_propeller_rate: None,
-        span: [0.0, 600.0],
+        time_span: [0.0, 600.0],
     }
 }
 
@@ -36,7 +36,7 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
             };
             let is_near = |x: f64, y: f64| (x - y).abs() <= 1e-12 * x.abs();
             let plain = value(point, &|_| 1.0);
-            let mirrored = value(point.mirrored(), &|p| if p.odd { -1.0 } else { 1.0 });
+            let mirrored = value(point.mirrored(), &|p| if p.is_odd { -1.0 } else { 1.0 });
             assert!(is_near(plain, -mirrored), "{name} of the other side: {plain} {mirrored}");
             let in_units = value(SignalPoint { second, metre, ..point }, &|p| {
                 let [seconds, metres] = p.dimension();
@@ -52,9 +52,9 @@ fn what_the_list_says_of_constants_is_what_their_formula_does() {
 fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
     let bank = Formula::parse("bank = c * tanh(k * psi)").expect("a formula");
     assert_eq!(bank.is_size, [true, false]);
-    assert!(bank.parameters().iter().all(|p| !p.odd) && bank.is_heading_dependent());
+    assert!(bank.parameters().iter().all(|p| !p.is_odd) && bank.is_heading_dependent());
     let even = Formula::parse("drift = c * abs(r) + d * v").expect("a formula");
-    assert_eq!(even.parameters().iter().map(|p| p.odd).collect::<Vec<_>>(), [true, false]);
+    assert_eq!(even.parameters().iter().map(|p| p.is_odd).collect::<Vec<_>>(), [true, false]);
     for (line, sides) in [
         ("bank = c * tanh(k * psi)", MirrorSymmetry::Odd),
         ("trend = c * t", MirrorSymmetry::Even),
@@ -74,7 +74,7 @@ fn sizes_and_shapes_are_told_apart_with_their_symmetry() {
         !bank.is_time_dependent()
             && !bank.is_heading_dependent()
             && bank.needs().is_none()
-            && bank.uses(Regressor::Speed)
+            && bank.uses(RegressorChannel::Speed)
     );
     for (line, units) in [
         ("cross = c * r * abs(v)", vec!["s²/m"]),
@@ -151,14 +151,14 @@ fn a_formula_is_had_again_from_what_is_written_of_it() {
         ("bank = c * y", vec![7.0, 0.0]),
     ] {
         let formula = Formula::parse(line).expect("a formula");
-        let again = crate::effects::find(formula.id(), formula.form(), &constants).expect("it is known");
+        let again = crate::effects::find_effect(formula.id(), formula.form(), &constants).expect("it is known");
         let read_back: Vec<f64> = again.constants().into_iter().map(|(constant, _)| constant).collect();
         assert_eq!((again.id(), again.form(), read_back), (formula.id(), formula.form(), constants));
     }
     for (form, constants) in [("c * rp", vec![]), ("c * rp", vec![-1.0]), ("c * r", vec![1.0]), ("c * dleta", vec![])] {
-        assert!(crate::effects::find("own", form, &constants).is_none(), "{form}");
+        assert!(crate::effects::find_effect("own", form, &constants).is_none(), "{form}");
     }
-    assert!(crate::effects::find("moment_drift", "c * r", &[]).is_none(), "a name of the list");
+    assert!(crate::effects::find_effect("moment_drift", "c * r", &[]).is_none(), "a name of the list");
 }
 
 #[test]

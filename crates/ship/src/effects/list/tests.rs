@@ -48,7 +48,7 @@ fn number(round: u32, place: u32) -> f64 {
 #[test]
 fn rows_are_their_equations_to_the_last_bit() {
     for row in rows() {
-        let Description { id, form, parameters, .. } = row.description;
+        let EffectDescription { id, form, parameters, .. } = row.description;
         let formula = Formula::listed(row);
         let constants: Vec<f64> =
             formula.constants().iter().map(|(neutral, _)| if *neutral > 0.0 { 7.3 } else { 3.25 }).collect();
@@ -63,7 +63,7 @@ fn rows_are_their_equations_to_the_last_bit() {
                 sway: Some(number(round, 7)),
                 wind_speed: Some(10.0 * number(round, 8).abs()),
                 wind_from: Some(3.0 * number(round, 9)),
-                propeller: None,
+                propeller_rate: None,
             };
             let mut now = OperatingPoint {
                 t: 100.0 * number(round, 10),

@@ -60,9 +60,10 @@ pub(super) fn polynomial_priors(prior: &HullPrior) -> Option<[PolynomialLaw; 2]>
         let hull = Mmg::at_speed(parameters.at_unit_length(), 1.0).ok()?;
         Some(DVector::from_vec(accelerations(&CalmHull::Mmg(Box::new(hull), 0.0))))
     };
-    let differences = prior.deviations.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
+    let differences =
+        prior.deviated_parameters.iter().filter_map(|[above, below]| Some(of_mmg(above)? - of_mmg(below)?));
     let differences = DMatrix::from_columns(&differences.collect::<Vec<_>>()) * (0.5 * SPREAD_FACTOR);
-    laws(&of_mmg(&prior.parameters)?, &differences)
+    laws(&of_mmg(&prior.mean_parameters)?, &differences)
 }
 
 /// Priors of both polynomials, from the accelerations of the mean hull and their half differences times f; `None` if a
@@ -115,7 +116,7 @@ fn law<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Input;
+    use crate::dynamics::ShipInput;
     use crate::ships::{self, ShipModel};
     use crate::vessel::prime::HullModel;
     use crate::vessel::state::{SURGE, SWAY, YAW_RATE};
@@ -131,7 +132,7 @@ mod tests {
         let mut accelerations = Vec::new();
         for ([u, v, r], rudder) in states() {
             (state[SURGE], state[SWAY], state[YAW_RATE]) = (u * scale.speed, v * scale.speed, r / second);
-            hull.rates(0.0, &state, &Input { rudder, ..Input::default() }, &mut rates);
+            hull.rates(0.0, &state, &ShipInput { rudder, ..ShipInput::default() }, &mut rates);
             let [u, v, r] = [SURGE, SWAY, YAW_RATE].map(|place| rates[place]);
             accelerations.extend([u * second / scale.speed, v * second / scale.speed, r * second * second]);
         }
@@ -157,7 +158,7 @@ mod tests {
             let squares: Vec<f64> = nearest.into_iter().zip(&forms).map(|(law, form)| square(form, law)).collect();
             Some((ship.name.to_string(), squares))
         };
-        let all: Vec<(String, Vec<f64>)> = ships::all().iter().filter_map(distances).collect();
+        let all: Vec<(String, Vec<f64>)> = ships::all_ships().iter().filter_map(distances).collect();
         let (kvlcc2, independent): (Vec<_>, Vec<_>) = all.into_iter().partition(|(name, _)| name.contains("KVLCC2"));
         assert!(kvlcc2.iter().all(|(_, squares)| squares.iter().all(|square| *square < 1.0)), "{kvlcc2:?}");
         for form in 0..2 {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::dynamics::Input;
+use crate::dynamics::ShipInput;
 use crate::ships::{kvlcc2, seiun_like};
 use crate::vessel::mmg::Mmg;
 
@@ -52,7 +52,7 @@ fn bare(length: f64, speed: f64) -> HullParticulars {
 }
 
 fn coefficient<'a>(prior: &'a HullPrior, key: &str) -> &'a CoefficientPrior {
-    prior.coefficients.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
+    prior.coefficient_priors.iter().find(|coefficient| coefficient.formula.key == key).expect(key)
 }
 
 /// Error of the mean, % of the published value.
@@ -126,8 +126,8 @@ fn published_hulls_are_plausible_under_their_prior() {
     for (given, published) in [(KVLCC2, kvlcc2::FULL_SCALE), (SEIUN_LIKE, seiun_like::PARAMETERS)] {
         let prior = hull_prior(&given).expect("a ship");
         let off = |c: &&CoefficientPrior| (value_in(c, published) - c.mean).abs() > 2.0 * c.sd;
-        let beyond: Vec<&str> = prior.coefficients.iter().filter(off).map(|c| c.formula.key).collect();
-        assert!(10 * beyond.len() <= prior.coefficients.len(), "{beyond:?}");
+        let beyond: Vec<&str> = prior.coefficient_priors.iter().filter(off).map(|c| c.formula.key).collect();
+        assert!(10 * beyond.len() <= prior.coefficient_priors.len(), "{beyond:?}");
     }
 }
 
@@ -135,17 +135,17 @@ fn published_hulls_are_plausible_under_their_prior() {
 fn the_mean_hull_sails_and_turns_her_propeller_as_declared() {
     for given in [KVLCC2, SEIUN_LIKE] {
         let prior = hull_prior(&given).expect("a ship");
-        let hull = Mmg::at_speed(prior.parameters, given.speed).expect("it balances");
+        let hull = Mmg::at_speed(prior.mean_parameters, given.speed).expect("it balances");
         let rate = given.propeller_rate.expect("declared");
         assert!((hull.revolutions() / rate - 1.0).abs() < 1e-9, "{} against {rate}", hull.revolutions());
-        assert!(prior.assumed.is_empty(), "{:?}", prior.assumed);
-        for coefficient in &prior.coefficients {
-            assert_eq!(value_in(coefficient, prior.parameters), coefficient.mean, "{}", coefficient.formula.key);
+        assert!(prior.assumed_particulars.is_empty(), "{:?}", prior.assumed_particulars);
+        for coefficient in &prior.coefficient_priors {
+            assert_eq!(value_in(coefficient, prior.mean_parameters), coefficient.mean, "{}", coefficient.formula.key);
             assert!(coefficient.sd > 0.0 && coefficient.sd.is_finite(), "{}", coefficient.formula.key);
         }
     }
     for given in [bare(320.0, 7.97), bare(7.0, 1.179), ESSO_OSAKA] {
-        Mmg::at_speed(hull_prior(&given).expect("a ship").parameters, given.speed).expect("it balances");
+        Mmg::at_speed(hull_prior(&given).expect("a ship").mean_parameters, given.speed).expect("it balances");
     }
 }
 
@@ -160,10 +160,10 @@ fn what_is_missing_widens_the_prior() {
         };
         assert!(share(&bare) > 1.05 * share(&complete), "{key}: {} against {}", share(&bare), share(&complete));
     }
-    let assumed: Vec<&str> = bare.assumed.iter().map(|assumed| assumed.key).collect();
+    let assumed: Vec<&str> = bare.assumed_particulars.iter().map(|assumed| assumed.key).collect();
     let missing = ["beam-m", "draught-m", "block-coefficient", "rudder-area-m2", "rudder-height-m"];
     assert_eq!(assumed[..5], missing);
-    let draught = &bare.assumed[1];
+    let draught = &bare.assumed_particulars[1];
     // L/(6.6 · 2.9), and the spreads of both ratios.
     assert!((draught.value - 16.72).abs() < 0.01 && (draught.sd / draught.value - 0.208).abs() < 0.01, "{draught:?}");
 }
@@ -171,7 +171,7 @@ fn what_is_missing_widens_the_prior() {
 /// Draught, beam or block coefficient, whichever is missing, follows from the displacement.
 #[test]
 fn the_displacement_tells_what_is_missing() {
-    let volume = |prior: &HullPrior| prior.parameters.volume;
+    let volume = |prior: &HullPrior| prior.mean_parameters.volume;
     for missing in [
         HullParticulars { block_coefficient: None, ..KVLCC2 },
         HullParticulars { draught: None, ..KVLCC2 },
@@ -237,7 +237,7 @@ fn the_mean_hull_turns_as_ships_do() {
         let mut state = vec![0.0; ship.dimension()];
         ship.approach(0.0, 0.0, &mut state);
         let time = given.length / given.speed;
-        let input = Input { rudder: 20f64.to_radians(), ..Input::default() };
+        let input = ShipInput { rudder: 20f64.to_radians(), ..ShipInput::default() };
         let mut rate = state.clone();
         for _ in 0..1500 {
             ship.rates(0.0, &state, &input, &mut rate);

@@ -3,7 +3,7 @@
 use ship::angle::{from_deg, to_deg};
 
 use super::ship::SimulatedLog;
-use crate::find::{Signals, manoeuvres};
+use crate::find::{LogSignals, detect_manoeuvres};
 use crate::testing::Gaussian;
 
 #[test]
@@ -81,7 +81,7 @@ fn a_gap_of_the_log_ends_a_zig_zag() {
     log.keep(300.0);
     log.time[rows - 5..].iter_mut().for_each(|t| *t += 7200.0);
     let detected = log.detected();
-    assert!(detected.iter().all(|manoeuvre| manoeuvre.until - manoeuvre.from < 1000.0), "{detected:?}");
+    assert!(detected.iter().all(|manoeuvre| manoeuvre.end_time - manoeuvre.start_time < 1000.0), "{detected:?}");
 }
 
 /// The rudder goes from a long circle directly to a short one, and only then amidships.
@@ -97,11 +97,11 @@ fn between_two_turns_there_is_no_pull_out() {
             heading.push(psi);
         }
     }
-    let log = Signals { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
-    let list = manoeuvres(&log);
+    let log = LogSignals { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller_rate: None };
+    let list = detect_manoeuvres(&log);
     let names: Vec<String> = list.iter().map(|manoeuvre| manoeuvre.name()).collect();
     assert_eq!(names, ["turning circle 10 to starboard", "turning circle 25 to port", "pull-out", "straight"]);
-    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from), "{list:?}");
+    assert!(list.windows(2).all(|pair| pair[0].end_time < pair[1].start_time), "{list:?}");
 }
 
 /// Logs of constants, of few rows or with unsound channels contain no manoeuvre.
@@ -113,11 +113,16 @@ fn logs_that_are_none() {
             for heading in [0.0, f64::NAN, f64::INFINITY] {
                 let (rudder, heading) = (vec![rudder; time.len()], vec![heading; time.len()]);
                 let channel = Some(&rudder[..]);
-                let log =
-                    Signals { time: &time, rudder: &rudder, heading: &heading, speed: channel, propeller: channel };
-                assert_eq!(manoeuvres(&log), []);
-                let shorter = Signals { rudder: &rudder[..rudder.len() / 2], propeller: Some(&[]), ..log };
-                assert_eq!(manoeuvres(&shorter), []);
+                let log = LogSignals {
+                    time: &time,
+                    rudder: &rudder,
+                    heading: &heading,
+                    speed: channel,
+                    propeller_rate: channel,
+                };
+                assert_eq!(detect_manoeuvres(&log), []);
+                let shorter = LogSignals { rudder: &rudder[..rudder.len() / 2], propeller_rate: Some(&[]), ..log };
+                assert_eq!(detect_manoeuvres(&shorter), []);
             }
         }
     }

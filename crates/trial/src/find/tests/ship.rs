@@ -3,7 +3,7 @@
 
 use ship::angle::from_deg;
 
-use crate::find::{DetectedManoeuvre, Signals, manoeuvres};
+use crate::find::{DetectedManoeuvre, LogSignals, detect_manoeuvres};
 use crate::testing::Gaussian;
 
 /// Log of a simulated ship under way, and the motion at its end.
@@ -116,23 +116,23 @@ impl SimulatedLog {
         (start, self.now() - self.step)
     }
 
-    pub fn signals(&self) -> Signals<'_> {
-        Signals {
+    pub fn signals(&self) -> LogSignals<'_> {
+        LogSignals {
             time: &self.time,
             rudder: &self.rudder,
             heading: &self.heading,
             speed: Some(&self.speed),
-            propeller: Some(&self.propeller),
+            propeller_rate: Some(&self.propeller),
         }
     }
 
     /// The manoeuvres except the straight pieces.
     pub fn detected(&self) -> Vec<DetectedManoeuvre> {
-        manoeuvres(&self.signals()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
+        detect_manoeuvres(&self.signals()).into_iter().filter(|manoeuvre| manoeuvre.manoeuvre.is_some()).collect()
     }
 
     /// Names of all detected manoeuvres.
     pub fn names(&self) -> Vec<String> {
-        manoeuvres(&self.signals()).iter().map(|manoeuvre| manoeuvre.name()).collect()
+        detect_manoeuvres(&self.signals()).iter().map(|manoeuvre| manoeuvre.name()).collect()
     }
 }

@@ -14,7 +14,7 @@ use flate2::read::ZlibDecoder;
 use super::text::{self, ChunkReader};
 use crate::file::FileError;
 use crate::names::{self, ColumnMeaning};
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 use crate::reader::{MAX_CELLS, RECORD_FILE};
 use variable::{
     ByteCursor, CELL_ARRAY, COMPRESSED, NonColumnVariable, Variable, Variables, class_name, contradiction, damaged,
@@ -76,7 +76,7 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Result<Variable, NonColumn
 
 /// Unpacks a variable with its tag; if it has no numbers, only up to its name. `left` is the number of bytes that may
 /// still be unpacked.
-fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, Problem> {
+fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, ReadProblem> {
     let mut decoder = ZlibDecoder::new(packed);
     let mut bytes = Vec::new();
     let mut read = |bytes: &mut Vec<u8>, most: u64| {
@@ -100,7 +100,7 @@ fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, 
 }
 
 /// Variables of a file of level 5.
-fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
+fn variables(bytes: &[u8]) -> Result<Variables, ReadProblem> {
     let big_endian = match bytes.get(HEAD_BYTES - 2..HEAD_BYTES) {
         Some(b"IM") => false,
         Some(b"MI") => true,
@@ -134,7 +134,7 @@ fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
 ///
 /// Fails for a damaged file, for a file without numeric variables of at least two rows, and for a cell array with the
 /// name of a quantity in no other variable.
-pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, ReadProblem> {
     let (numeric, left_out) = if is_level4(&bytes) { level4::variables(&bytes)? } else { variables(&bytes)? };
     let quantity = |name: &str| match names::column_meaning(name)? {
         ColumnMeaning::Channel(channel, _) => Some(ColumnMeaning::Channel(channel, None)),
@@ -146,7 +146,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         cell.kind == CELL_ARRAY && wanted.is_some() && numeric.iter().all(|variable| quantity(&variable.name) != wanted)
     };
     if let Some(cell) = left_out.iter().find(is_lacking) {
-        return Err(Problem::CellArray { column: cell.name.clone() });
+        return Err(ReadProblem::CellArray { column: cell.name.clone() });
     }
     let worth = |rows: usize| {
         let of_length = || numeric.iter().filter(|variable| variable.rows == rows);
@@ -160,7 +160,7 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
         let sizes = numeric.iter().map(|Variable { name, rows, columns, .. }| format!("{name} ({rows}x{columns})"));
         let kinds = left_out.iter().map(|NonColumnVariable { name, kind }| format!("{name} ({kind})"));
         let (wanted, content) = ("numeric variables of equal length", sizes.chain(kinds).collect());
-        return Err(Problem::NoTable { format: "a MATLAB file", wanted, content });
+        return Err(ReadProblem::NoTable { format: "a MATLAB file", wanted, content });
     };
     let variables: Vec<Variable> = numeric.into_iter().filter(|variable| variable.rows == length).collect();
     let columns: Vec<(usize, usize)> = (variables.iter().enumerate())

@@ -18,7 +18,7 @@ mod text;
 
 use std::io::Read;
 
-use super::error::Problem;
+use super::error::ReadProblem;
 
 /// Kind of a binary table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,19 +42,19 @@ impl BinaryFormat {
     /// Reader of the table in a binary file as tab-separated UTF-8 text: column names, then one line per row.
     ///
     /// Fails if the file is damaged, uses an unsupported compression, or contains no table.
-    pub fn read_as_text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+    pub fn read_as_text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, ReadProblem> {
         match self {
             #[cfg(feature = "parquet")]
             Self::Parquet => parquet::read_as_text(bytes),
             #[cfg(not(feature = "parquet"))]
-            Self::Parquet => Err(Problem::Format {
+            Self::Parquet => Err(ReadProblem::Format {
                 format: "a Parquet file",
                 cure: "export it as CSV, or use a build with the feature `parquet`",
             }),
             #[cfg(feature = "spreadsheets")]
             Self::Spreadsheet => spreadsheet::read_as_text(bytes),
             #[cfg(not(feature = "spreadsheets"))]
-            Self::Spreadsheet => Err(Problem::Format {
+            Self::Spreadsheet => Err(ReadProblem::Format {
                 format: "a spreadsheet or an archive (ZIP)",
                 cure: "export it as CSV, or use a build with the feature `spreadsheets`",
             }),

@@ -16,7 +16,7 @@ use parquet::schema::types::ColumnDescriptor;
 
 use super::text::{self, ChunkReader};
 use crate::decoder::{CheckedPages, PageHead, catch_panic};
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 
 /// Rows decoded at a time.
 const BATCH_ROWS: usize = 4096;
@@ -133,21 +133,21 @@ struct Rows {
     left: usize,
 }
 
-fn damaged(damage: String) -> Problem {
-    Problem::Damaged { format: "a Parquet file", damage }
+fn damaged(damage: String) -> ReadProblem {
+    ReadProblem::Damaged { format: "a Parquet file", damage }
 }
 
-fn failed(error: ParquetError) -> Problem {
+fn failed(error: ParquetError) -> ReadProblem {
     damaged(error.to_string())
 }
 
 /// Reader of a Parquet file as tab-separated text, decoded chunk by chunk; names first, then rows.
-pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, ReadProblem> {
     let mut rows = checked(|| Rows::open(bytes))?;
     Ok(Box::new(ChunkReader::new(std::iter::from_fn(move || checked(|| rows.chunk()).transpose()))))
 }
 
-fn checked<T>(work: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
+fn checked<T>(work: impl FnOnce() -> Result<T, ReadProblem>) -> Result<T, ReadProblem> {
     catch_panic(work).unwrap_or_else(|| Err(damaged("its content contradicts itself".to_owned())))
 }
 
@@ -162,7 +162,7 @@ fn unsupported(compression: Compression) -> Option<&'static str> {
 }
 
 impl Rows {
-    fn open(bytes: Vec<u8>) -> Result<Self, Problem> {
+    fn open(bytes: Vec<u8>) -> Result<Self, ReadProblem> {
         let file = SerializedFileReader::new(CheckedPages { bytes: Bytes::from(bytes), fits }).map_err(failed)?;
         let schema = file.metadata().file_metadata().schema_descr_ptr();
         let mut columns = Vec::new();
@@ -174,7 +174,7 @@ impl Rows {
         }
         if columns.is_empty() {
             let content = schema.columns().iter().map(|column| column.path().string()).collect();
-            return Err(Problem::NoTable { format: "a Parquet file", wanted: "flat columns", content });
+            return Err(ReadProblem::NoTable { format: "a Parquet file", wanted: "flat columns", content });
         }
         for group in file.metadata().row_groups() {
             if group.num_rows() < 0 {
@@ -182,7 +182,7 @@ impl Rows {
             }
             for column in &columns {
                 if let Some(format) = unsupported(group.column(column.index).compression()) {
-                    return Err(Problem::Format { format, cure: "write it with snappy compression or without" });
+                    return Err(ReadProblem::Format { format, cure: "write it with snappy compression or without" });
                 }
             }
         }
@@ -190,7 +190,7 @@ impl Rows {
     }
 
     /// Line of names, then the next rows; `None` after the last row.
-    fn chunk(&mut self) -> Result<Option<String>, Problem> {
+    fn chunk(&mut self) -> Result<Option<String>, ReadProblem> {
         let mut text = String::new();
         if !std::mem::replace(&mut self.headed, true) {
             text::write_line(&mut text, self.columns.len(), |text, at| text::write_cell(text, &self.columns[at].name));
@@ -220,7 +220,7 @@ impl Rows {
 }
 
 impl Column {
-    fn decode(&mut self, length: usize) -> Result<(), Problem> {
+    fn decode(&mut self, length: usize) -> Result<(), ReadProblem> {
         let Self { name, reader, cells, meaning, .. } = self;
         let meaning = *meaning;
         let early = || damaged(format!("its column `{}` ends too early", crate::wording::shortened(name)));
@@ -298,7 +298,7 @@ fn read<T: DataType>(
     length: usize,
     cells: &mut Cells,
     write: impl Fn(&mut String, &T::T),
-) -> Result<bool, Problem> {
+) -> Result<bool, ReadProblem> {
     let (mut present, mut values) = (Vec::new(), Vec::with_capacity(length));
     let mut read = 0;
     while read < length {

@@ -14,7 +14,7 @@ use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 use super::text::{self, ChunkReader};
 use crate::decoder::catch_panic;
 use crate::names;
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 
 /// Maximum number of rows and columns of a sheet (Excel 2007 and later).
 const MAX_SIZE: (u32, u32) = (1 << 20, 1 << 14);
@@ -30,14 +30,14 @@ const DAY_0: [i64; 2] = [-25_569, -24_107];
 
 type Book = Xlsx<Cursor<Vec<u8>>>;
 type Cells<'a> = XlsxCellReader<'a, Cursor<Vec<u8>>>;
-type Chunk = Result<String, Problem>;
+type Chunk = Result<String, ReadProblem>;
 
-fn damaged(damage: impl ToString) -> Problem {
-    Problem::Damaged { format: "a spreadsheet or an archive (ZIP)", damage: damage.to_string() }
+fn damaged(damage: impl ToString) -> ReadProblem {
+    ReadProblem::Damaged { format: "a spreadsheet or an archive (ZIP)", damage: damage.to_string() }
 }
 
 /// Reader of the sheet with the table as tab-separated text; a thread decodes the rows.
-pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, ReadProblem> {
     let (send, receive) = sync_channel(2);
     let decode = move || {
         let done = catch_panic(|| decode(bytes, &send));
@@ -46,14 +46,14 @@ pub fn read_as_text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
             let _ = send.send(Err(problem));
         }
     };
-    std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(Problem::from_input)?;
+    std::thread::Builder::new().name("spreadsheet".to_owned()).spawn(decode).map_err(ReadProblem::from_input)?;
     Ok(Box::new(ChunkReader::new(receive.into_iter())))
 }
 
 /// Sends the lines of the sheet with the table.
-fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
+fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), ReadProblem> {
     let mut book: Book = Xlsx::new(Cursor::new(bytes)).map_err(|error| match error {
-        XlsxError::FileNotFound(_) => Problem::Format {
+        XlsxError::FileNotFound(_) => ReadProblem::Format {
             format: "an archive (ZIP) without the parts of an Excel workbook",
             cure: "export the table as CSV",
         },
@@ -99,7 +99,7 @@ struct Head {
     timed: Vec<u32>,
 }
 
-fn read_head(cells: Cells) -> Result<Head, Problem> {
+fn read_head(cells: Cells) -> Result<Head, ReadProblem> {
     let mut head = Head::default();
     each_row(cells, |row, cells| {
         let is_name = |value: &DataRef| match value {
@@ -123,8 +123,8 @@ fn read_head(cells: Cells) -> Result<Head, Problem> {
 /// Passes every row with a cell, and its number, to `take` until that returns `false`.
 fn each_row<'a>(
     mut cells: Cells<'a>,
-    mut take: impl FnMut(u32, &[(u32, DataRef<'a>)]) -> Result<bool, Problem>,
-) -> Result<(), Problem> {
+    mut take: impl FnMut(u32, &[(u32, DataRef<'a>)]) -> Result<bool, ReadProblem>,
+) -> Result<(), ReadProblem> {
     let (mut row, mut row_cells) = (0, Vec::new());
     while let Some(cell) = cells.next_cell().map_err(damaged)? {
         let (cell_row, column) = cell.get_position();

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, Read};
 
 use crate::clock;
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 
 /// Reader of a text that is generated in chunks of lines while it is read.
 pub struct ChunkReader<I> {
@@ -13,13 +13,13 @@ pub struct ChunkReader<I> {
     consumed: usize,
 }
 
-impl<I: Iterator<Item = Result<String, Problem>>> ChunkReader<I> {
+impl<I: Iterator<Item = Result<String, ReadProblem>>> ChunkReader<I> {
     pub fn new(chunks: I) -> Self {
         Self { chunks, text: String::new(), consumed: 0 }
     }
 }
 
-impl<I: Iterator<Item = Result<String, Problem>>> Read for ChunkReader<I> {
+impl<I: Iterator<Item = Result<String, ReadProblem>>> Read for ChunkReader<I> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         while self.consumed == self.text.len()
             && let Some(chunk) = self.chunks.next()

@@ -7,8 +7,8 @@ use estimation::statistics::upper_median;
 
 use super::log::{NmeaInstrument, NmeaLog};
 use super::sentence::NmeaQuantity;
-use crate::clock::{Clock, SECONDS_PER_DAY, Stamp, StampConverter};
-use crate::reader::error::Problem;
+use crate::clock::{Clock, SECONDS_PER_DAY, StampConverter, TimeStamp};
+use crate::reader::error::ReadProblem;
 use crate::wording::counted;
 
 /// Minimum length of a gap, usual epochs.
@@ -89,11 +89,11 @@ fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
 /// Instants of a log whose time is in its sentences.
 ///
 /// Fails without at least two different times, and if they decrease for more than one sentence.
-pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, Problem> {
+pub(super) fn timing_from_sentences(log: &mut NmeaLog) -> Result<Timing, ReadProblem> {
     let times = |clock: &NmeaInstrument| clock.column(NmeaQuantity::Second).map_or(0, |column| clock.readings(column));
     let rank = |clock: &NmeaInstrument| [b"ZDA", b"RMC", b"GGA", b"GLL"].into_iter().position(|code| clock.sends(code));
     let clocks = log.instruments.iter().filter(|instrument| times(instrument) > 0);
-    let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
+    let none = |clocks| ReadProblem::NoClock { sentences: log.counts.sentences, clocks };
     let driver = clocks.min_by_key(|clock| (std::cmp::Reverse(times(clock)), rank(clock))).ok_or_else(|| none(0))?;
     let (name, driven) = (driver.name.clone(), times(driver));
     let (epochs, mut clock, strayed) = epochs(driver)?;
@@ -144,7 +144,7 @@ struct Epoch {
 }
 
 /// Strictly increasing times of an instrument, the clock at time 0, and the number of omitted times.
-fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
+fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), ReadProblem> {
     let second =
         &instrument.columns[instrument.column(NmeaQuantity::Second).expect("only instruments with times are asked")];
     let days = instrument.column(NmeaQuantity::Day).map(|column| &instrument.columns[column]);
@@ -152,7 +152,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
     let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
     let mut stamps = StampConverter::default();
     let read = |row: usize| {
-        let stamp = Stamp::new(dated.map(|days| days[row] as i64), second[row]);
+        let stamp = TimeStamp::new(dated.map(|days| days[row] as i64), second[row]);
         stamps.seconds(stamp).ok().map(|time| Epoch { line: instrument.instants[row], time: rounded(time) })
     };
     let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
@@ -175,7 +175,7 @@ fn epochs(instrument: &NmeaInstrument) -> Result<(Vec<Epoch>, Clock, usize), Pro
             let ahead = kept.len() == 1 || epoch.time >= kept[kept.len() - 2].time;
             if !ahead || next.is_some_and(|next| next.time < epoch.time) {
                 let line = epoch.line as usize;
-                return Err(Problem::ClockBack {
+                return Err(ReadProblem::ClockBack {
                     line,
                     before: clock.time_of_day_at(last.time),
                     after: clock.time_of_day_at(epoch.time),

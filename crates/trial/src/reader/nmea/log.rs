@@ -5,7 +5,7 @@ use super::frame::{Fields, Frame, Line, frame};
 use super::sentence::{MAX_SLOTS, NmeaQuantity, Row, XDR, sentence, transducers};
 use super::stamp::PrefixReader;
 use crate::clock::StampConverter;
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 use crate::reader::limits::MAX_CELLS;
 use crate::wording::shortened;
 
@@ -104,7 +104,7 @@ impl NmeaLog {
     /// Adds the line with a number.
     ///
     /// Fails for a date with two readings, for a clock that goes back, and beyond [`MAX_CELLS`] values.
-    pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), Problem> {
+    pub fn take(&mut self, line: &[u8], number: usize) -> Result<(), ReadProblem> {
         match frame(line) {
             Line::Sentence(frame) => return self.sentence(&frame, number),
             Line::Foreign => self.counts.foreign_sentences += 1,
@@ -116,7 +116,7 @@ impl NmeaLog {
         Ok(())
     }
 
-    fn sentence(&mut self, frame: &Frame, number: usize) -> Result<(), Problem> {
+    fn sentence(&mut self, frame: &Frame, number: usize) -> Result<(), ReadProblem> {
         let Some((formatter, slots, read)) = sentence(&frame.address[2..]) else {
             self.count(frame);
             return Ok(());
@@ -129,7 +129,7 @@ impl NmeaLog {
                 self.counts.without_stamp += 1;
                 return Ok(());
             };
-            let fault = |_| Problem::AmbiguousDate { line: number, value: shortened(frame.before.trim()) };
+            let fault = |_| ReadProblem::AmbiguousDate { line: number, value: shortened(frame.before.trim()) };
             at = self.stamps.seconds(stamp).map_err(fault)?;
             if !self.follows(at, number)? {
                 self.counts.sentences += 1;
@@ -151,7 +151,7 @@ impl NmeaLog {
             }
         }
         if self.numbers > MAX_CELLS {
-            return Err(Problem::TooManyReadings { line: number, limit: MAX_CELLS });
+            return Err(ReadProblem::TooManyReadings { line: number, limit: MAX_CELLS });
         }
         Ok(())
     }
@@ -206,7 +206,7 @@ impl NmeaLog {
 
     /// `true` for a stamp not before its predecessors. A single earlier stamp is omitted; fails if time restarts,
     /// as in two joined logs.
-    fn follows(&mut self, at: f64, number: usize) -> Result<bool, Problem> {
+    fn follows(&mut self, at: f64, number: usize) -> Result<bool, ReadProblem> {
         let (latest, before, lines) = self.latest;
         if at >= latest - MAX_DISORDER_S {
             self.late = None;
@@ -227,7 +227,7 @@ impl NmeaLog {
         if let Some((line, after)) = self.late {
             let clock = self.stamps.clock();
             let shown = |at: f64| clock.map_or_else(|| format!("{at} s"), |clock| clock.time_of_day_at(at));
-            return Err(Problem::ClockBack { line, before: shown(latest), after: shown(after) });
+            return Err(ReadProblem::ClockBack { line, before: shown(latest), after: shown(after) });
         }
         self.counts.stray_stamps += 1;
         self.late = Some((number, at));

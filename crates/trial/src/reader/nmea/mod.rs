@@ -24,9 +24,9 @@ use self::epochs::{is_or_are, rounded, timing_from_sentences, timing_from_stamps
 use self::frame::{Line, frame};
 use self::log::{LineCounts, NmeaLog};
 use self::stamp::PrefixReader;
-use super::error::Problem;
+use super::error::ReadProblem;
 use super::lines::Lines;
-use super::source::{Log, Series};
+use super::source::{InstrumentLog, Series};
 use crate::clock::{Clock, SECONDS_PER_DAY};
 use crate::wording::counted;
 
@@ -50,15 +50,15 @@ pub(super) fn is_sentence(line: &str) -> bool {
     !line.trim_start().starts_with('#') && (has_address(sentence, 5) || is_proprietary)
 }
 
-/// Reads a log: a series for each channel, and a [`Log`] without columns.
+/// Reads a log: a series for each channel, and an [`InstrumentLog`] without columns.
 ///
 /// Fails if more than half of the lines are damaged, if time is absent or decreases, if a date has two
 /// readings, and if no sentence contains a used quantity.
-pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), Problem> {
+pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, InstrumentLog), ReadProblem> {
     let (mut begin, mut sentences) = (Vec::new(), 0);
     while sentences < PROBED_SENTENCES
         && begin.len() < MAX_PROBED_LINES
-        && let Some(line) = lines.next_bytes()?
+        && let Some(line) = lines.next_line_bytes()?
     {
         sentences += usize::from(matches!(frame(line), Line::Sentence(_)));
         begin.push(line.to_vec());
@@ -70,11 +70,11 @@ pub(super) fn read<R: Read>(mut lines: Lines<R>) -> Result<(Vec<Series>, Log), P
     drop(begin);
     loop {
         // The number is taken before the line is read, because the line borrows the source.
-        let number = lines.number() + 1;
-        let Some(line) = lines.next_bytes()? else { break };
+        let number = lines.line_number() + 1;
+        let Some(line) = lines.next_line_bytes()? else { break };
         log.take(line, number)?;
     }
-    let number = lines.number();
+    let number = lines.line_number();
     finish(log, number, lines.sha256())
 }
 
@@ -92,18 +92,18 @@ fn is_stamped(lines: &[Vec<u8>]) -> bool {
 }
 
 /// Channels of a log that was read to its end.
-fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, Log), Problem> {
+fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>, InstrumentLog), ReadProblem> {
     let counts = log.counts;
     let LineCounts { blank_lines, wrong_checksums: wrong, broken_sentences: broken, .. } = counts;
     let (written, damaged) = (lines - blank_lines, wrong + broken);
     if 2 * damaged > written {
-        return Err(Problem::DamagedLog { lines: written, damaged, wrong, broken });
+        return Err(ReadProblem::DamagedLog { lines: written, damaged, wrong, broken });
     }
     if log.instruments.is_empty() {
         return Err(if counts.without_stamp > 0 {
-            Problem::NoClock { sentences: counts.sentences, clocks: 0 }
+            ReadProblem::NoClock { sentences: counts.sentences, clocks: 0 }
         } else {
-            Problem::NoReadings { sentences: counts.sentences }
+            ReadProblem::NoReadings { sentences: counts.sentences }
         });
     }
     let (clock, timing) = if log.has_stamps { timing_from_stamps(&mut log) } else { timing_from_sentences(&mut log)? };
@@ -112,10 +112,10 @@ fn finish(mut log: NmeaLog, lines: usize, sha256: String) -> Result<(Vec<Series>
     let ChosenInstruments { mut series, warnings: choices, .. } = ChosenInstruments::from_instruments(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
-        return Err(Problem::NoReadings { sentences: counts.sentences });
+        return Err(ReadProblem::NoReadings { sentences: counts.sentences });
     }
     let clock = begin_at_zero(&mut series, clock);
-    Ok((series, Log { clock, warnings, rows: lines, sha256, ..Log::default() }))
+    Ok((series, InstrumentLog { clock, warnings, rows: lines, sha256, ..InstrumentLog::default() }))
 }
 
 /// Shifts times so that the first instant is 0, and returns the clock at that instant.

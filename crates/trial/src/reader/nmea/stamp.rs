@@ -4,7 +4,7 @@
 //! Source of the tag block: NMEA 0183 version 4.11.
 
 use super::frame::sum;
-use crate::clock::{SECONDS_PER_DAY, Stamp};
+use crate::clock::{SECONDS_PER_DAY, TimeStamp};
 
 /// Maximum length of the text before a sentence, bytes; a longer text has no stamp.
 const MAX_TEXT_BYTES: usize = 120;
@@ -22,12 +22,12 @@ pub(super) struct PrefixReader {
     window: Option<(usize, usize)>,
     /// Text before the last sentence, with its stamp and source.
     last: String,
-    last_reading: (Option<Stamp>, u8),
+    last_reading: (Option<TimeStamp>, u8),
 }
 
 impl PrefixReader {
     /// Stamp before a sentence (`None` if absent) and number of the source (0 if absent).
-    pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
+    pub fn read(&mut self, before: &str) -> (Option<TimeStamp>, u8) {
         if before != self.last {
             self.last_reading = self.parse(before);
             self.last.clear();
@@ -36,7 +36,7 @@ impl PrefixReader {
         self.last_reading
     }
 
-    fn parse(&mut self, before: &str) -> (Option<Stamp>, u8) {
+    fn parse(&mut self, before: &str) -> (Option<TimeStamp>, u8) {
         if before.len() > MAX_TEXT_BYTES {
             return (None, 0);
         }
@@ -48,7 +48,7 @@ impl PrefixReader {
     }
 
     /// Reads a tag block such as `c:1763647385,s:GP0001*hh`.
-    fn tag_block(&mut self, block: &str) -> (Option<Stamp>, u8) {
+    fn tag_block(&mut self, block: &str) -> (Option<TimeStamp>, u8) {
         let content = match block.split_once('*') {
             Some((content, digits)) if u8::from_str_radix(digits, 16) == Ok(sum(content.as_bytes())) => content,
             Some(_) => return (None, 0),
@@ -59,7 +59,7 @@ impl PrefixReader {
     }
 
     /// Stamp and source in the plain text before a sentence.
-    fn plain_text(&mut self, before: &str) -> (Option<Stamp>, u8) {
+    fn plain_text(&mut self, before: &str) -> (Option<TimeStamp>, u8) {
         let text = before.replace(['"', '\'', '[', ']', '(', ')', '<', '>'], "");
         let all = text.split([' ', '\t', ',', ';', '|']).filter(|word| !word.is_empty());
         let parts = all.take(MAX_WORDS).collect::<Vec<&str>>();
@@ -98,13 +98,13 @@ impl PrefixReader {
 }
 
 /// Stamp with a time of day in any notation.
-fn parse_stamp(text: &str) -> Option<Stamp> {
-    Stamp::parse(text).or_else(|| since_1970(text)).filter(Stamp::has_time)
+fn parse_stamp(text: &str) -> Option<TimeStamp> {
+    TimeStamp::parse(text).or_else(|| since_1970(text)).filter(TimeStamp::has_time)
 }
 
 /// Stamp from seconds, milliseconds or microseconds since 1970-01-01 UTC, by the number of digits; `None` for any other
 /// text.
-fn since_1970(text: &str) -> Option<Stamp> {
+fn since_1970(text: &str) -> Option<TimeStamp> {
     let (whole, decimals) = text.split_once('.').unwrap_or((text, ""));
     if !whole.bytes().chain(decimals.bytes()).all(|byte| byte.is_ascii_digit()) || decimals.len() > 12 {
         return None;
@@ -121,5 +121,5 @@ fn since_1970(text: &str) -> Option<Stamp> {
     let (seconds, fraction) = (whole / per_second, (whole % per_second) as f64);
     let day = seconds / SECONDS_PER_DAY as u64;
     let second = (seconds % SECONDS_PER_DAY as u64) as f64 + (fraction + decimals) / per_second as f64;
-    Some(Stamp::new(Some(day as i64), second))
+    Some(TimeStamp::new(Some(day as i64), second))
 }

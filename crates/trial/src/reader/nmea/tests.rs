@@ -16,13 +16,13 @@ fn summed(body: &str) -> String {
 }
 
 /// Content of a log of sentences.
-type Sentences = (Vec<Series>, Log);
+type Sentences = (Vec<Series>, InstrumentLog);
 
-fn read_from(bytes: &[u8]) -> Result<Sentences, Problem> {
+fn read_from(bytes: &[u8]) -> Result<Sentences, ReadProblem> {
     read(Lines::new(bytes, Encoding::Utf8))
 }
 
-fn read_log(lines: &[String]) -> Result<Sentences, Problem> {
+fn read_log(lines: &[String]) -> Result<Sentences, ReadProblem> {
     read_from(lines.join("\r\n").as_bytes())
 }
 
@@ -142,7 +142,7 @@ fn what_is_not_valid_is_not_read() {
         "IIMWV,214.8,R,0.1,K,V",
         "HCHDG,,,,7.1,W",
     ] {
-        assert!(matches!(read_log(&stamped(&[body, body])), Err(Problem::NoReadings { .. })), "{body}");
+        assert!(matches!(read_log(&stamped(&[body, body])), Err(ReadProblem::NoReadings { .. })), "{body}");
     }
     let mended = source(&stamped(&["HEHDT,10.0,T", "HEHDT,999.9,T", "HEHDT,,T", "HEHDT,11.0,T"]));
     let heading = series(&mended, Channel::Heading);
@@ -258,8 +258,8 @@ fn a_log_that_is_none_is_refused_with_the_numbers() {
          possible for sentences)"
     );
     let one = [rmc("140300"), timeless[0].clone()];
-    assert!(matches!(read_log(&one), Err(Problem::NoClock { sentences: 2, clocks: 1 })));
-    assert!(matches!(read_log(&stamped(&["GPGSV,1,1,00"])), Err(Problem::NoReadings { sentences: 1 })));
+    assert!(matches!(read_log(&one), Err(ReadProblem::NoClock { sentences: 2, clocks: 1 })));
+    assert!(matches!(read_log(&stamped(&["GPGSV,1,1,00"])), Err(ReadProblem::NoReadings { sentences: 1 })));
     let dates: Vec<String> =
         ["03/04/2026 12:00:00", "07/04/2026 12:00:00"].map(|t| format!("{t} {}", timeless[0])).to_vec();
     let problem = read_log(&dates).expect_err("either may be the month");

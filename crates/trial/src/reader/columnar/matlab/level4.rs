@@ -4,12 +4,13 @@
 //! Source of the layout: MathWorks, "MAT-File Format", chapter 2 (level 4 MAT-files).
 
 use super::variable::{ByteCursor, NonColumnVariable, Variable, Variables, class_name, contradiction, damaged, size};
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 
 /// Maximum length of the name of a variable with its terminator, bytes.
 const MAX_NAME_BYTES: u32 = 64;
 
-/// Kinds of numbers of level 5 by their digit in level 4.
+/// Codes of the number formats of level 5 in the order of the tens digit of level 4: `double`, `single`, `int32`,
+/// `int16`, `uint16`, `uint8`.
 const KINDS: [u32; 6] = [9, 7, 5, 3, 4, 2];
 
 /// Head of a variable.
@@ -53,7 +54,7 @@ pub fn is_level4(bytes: &[u8]) -> bool {
 }
 
 /// Variables of a file; all have the byte order of the first.
-pub fn variables(bytes: &[u8]) -> Result<Variables, Problem> {
+pub fn variables(bytes: &[u8]) -> Result<Variables, ReadProblem> {
     let (mut numeric, mut left_out) = (Vec::new(), Vec::new());
     let big_endian = VariableHead::read(&mut ByteCursor { tail: bytes, big_endian: false }).is_none();
     let mut scan = ByteCursor { tail: bytes, big_endian };

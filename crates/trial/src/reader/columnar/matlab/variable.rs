@@ -1,7 +1,7 @@
 //! Variables of MATLAB files of either level, and their bytes.
 
 use crate::reader::columnar::text;
-use crate::reader::error::Problem;
+use crate::reader::error::ReadProblem;
 
 /// Kind of a data element that contains a compressed data element.
 pub const COMPRESSED: u32 = 15;
@@ -90,12 +90,12 @@ impl<'a> ByteCursor<'a> {
 }
 
 /// Problem of a damaged MATLAB file.
-pub fn damaged(damage: &str) -> Problem {
-    Problem::Damaged { format: "a MATLAB file", damage: damage.to_owned() }
+pub fn damaged(damage: &str) -> ReadProblem {
+    ReadProblem::Damaged { format: "a MATLAB file", damage: damage.to_owned() }
 }
 
 /// Problem of a variable whose stated sizes disagree.
-pub fn contradiction() -> Problem {
+pub fn contradiction() -> ReadProblem {
     damaged("a variable of it contradicts itself")
 }
 

@@ -10,7 +10,7 @@ pub(super) const PER_DEGREE_SQUARED: f64 = PER_DEGREE * PER_DEGREE;
 
 /// Number of a scenario file that sets a parameter of an effect: key, unit, conversion and default.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ScenarioNumber {
+pub struct ScenarioKey {
     /// Key below the effect; it ends in the unit.
     pub key: &'static str,
     /// Size of the unit of the key, in SI and radians.
