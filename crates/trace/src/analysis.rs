@@ -166,14 +166,13 @@ fn analyse(
     let validation = without_spikes(&rudder::estimate_rudders(validation).0).0.into_owned();
     let base = FittedBase::fit(&trials)?;
     let ship_length_time = candidates::ship_length_time(&trials, base.estimate.response.K_over_T);
-    let records: Vec<PreparedRecord> =
-        trials.iter().map(|trial| PreparedRecord::averaged(trial, ship_length_time)).collect();
+    let prepared = |trial| PreparedRecord::averaged(trial, ship_length_time);
+    let records: Vec<PreparedRecord> = trials.iter().map(prepared).collect();
     let candidates = candidates_of(&records, &trials, ship_length_time, settings)?;
     let problem = FittedRecords::new(records, base.estimate.response.inverse_T, ship_length_time);
     let (full, structures) = weighed(&problem, &base, &candidates, &trials, settings, &rudder_noises);
     let (members, noise_law) = (structures.weighted_members(), &full.noise_law);
-    let compare =
-        |hulls: &[HullEstimate]| compare_fitted(&trials, &base, noise_law, &members, hulls, settings, ship_length_time);
+    let compare = |hulls: &[_]| compare_fitted(&trials, &base, noise_law, &members, hulls, settings, ship_length_time);
     let (mut identification, mut keeps_base) = compare(&[])?;
     let attribution = attribute(&problem, &full, &structures, &candidates, settings);
     let residual_analysis =
@@ -183,8 +182,7 @@ fn analyse(
     let averaged = FittedAverage { members: &members, hulls: &hulls, noise_law, fitted_record: None, ship_length_time };
     let held_out = averaged.compare_all(&validation, &base.estimate.response, settings.is_thorough)?;
     let is_folded = settings.is_thorough && trials.len() > 1 && validation.is_empty();
-    let folds = || leave_one_out(&trials, &problem, &full, &structures, &hulls, observer);
-    let leave_one_out = if is_folded { folds() } else { Vec::new() };
+    let folds = is_folded.then(|| leave_one_out(&trials, &problem, &full, &structures, &hulls, observer));
     let parts = report::TraceParts {
         trials: &trials,
         settings,
@@ -194,7 +192,7 @@ fn analyse(
         candidates: &candidates,
         identification: &identification,
         validation: (&validation, &held_out),
-        leave_one_out: &leave_one_out,
+        leave_one_out: folds.as_deref().unwrap_or_default(),
         residual_analysis: &residual_analysis,
         attribution: &attribution,
         outlier_times: &outliers,
@@ -209,7 +207,7 @@ fn analyse(
         base: base.estimate,
         identification,
         validation: held_out,
-        leave_one_out,
+        leave_one_out: folds.unwrap_or_default(),
         structures,
         full_model: full,
         hulls,
