@@ -172,7 +172,7 @@ fn the_page_begins_with_the_finding_and_its_figure() {
     );
     assert!(report.contains("(horizon.png)") && report.contains("(prior-odds.png)"), "{report}");
     assert!(shown.matches("<table").count() == 2 && folded.contains(">Evidence</h2></summary>"));
-    let caption = "(a), (b): a record that was fitted.";
+    let caption = "(a), (b): a fitted record.";
     assert_eq!((report.matches(caption).count(), page.matches(caption).count()), (1, 1));
     desk.draw(&["trace", "run.csv", "--out", "alone", "--quiet"]).is_done();
     let alone = desk.text("alone/report.md");
