@@ -10,7 +10,7 @@ use report::palette::{CurveStyle, RECORD, RGBColor, UNHIGHLIGHTED};
 use super::pooled_charts::{ALL_CELLS_ROW, COUNT_PREFIX};
 
 /// Maximum number of rows that all have their values written.
-const MAX_NUMBERED_ROWS: usize = 12;
+const MAX_NUMBERED_ROWS: usize = 14;
 
 /// Strength of the colour of marks in rows that are not highlighted.
 const TINT: f64 = 0.5;

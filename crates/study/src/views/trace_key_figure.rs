@@ -107,17 +107,24 @@ fn all_held(document: &TraceDocument) -> PanelGroup {
     ];
     let [before, after] = heading_rms_deg(held.iter()).map(|error| significant(error, 3));
     let head = format!(
-        "(e) all {} held-out records: rms {before}° → {after}°, {:.0} %",
+        "(e) all {} held-out records, first-order response (squares) and with these effects (circles): rms {before}° → \
+         {after}°, {:.0} %",
         held.len(),
         100.0 * heading_error_ratio(held.iter())
     );
     let row = PanelRow::new(AxisSpec::decimal("rms error [°]"), 0.13);
     let panel = LayeredPanel { head: Some(head), layers, ..LayeredPanel::default() };
     let names = order.iter().map(|(record, _)| names::record_name(&record.name)).collect();
-    PanelGroup { x: vec![AxisSpec::of_names(names)], rows: vec![row], panels: vec![panel], ..PanelGroup::default() }
+    PanelGroup {
+        x: vec![AxisSpec { title: "held-out record".into(), ..AxisSpec::of_names(names) }],
+        rows: vec![row],
+        panels: vec![panel],
+        ..PanelGroup::default()
+    }
 }
 
-/// Remark on the recorded channels that the models replay: the rudder, and the channels that the named effects use.
+/// Remark on the ship, if its name is given, and on the recorded channels that the models replay: the rudder, and the
+/// channels that the named effects use.
 fn inputs_remark(document: &TraceDocument) -> String {
     const CHANNELS: [(RegressorChannel, &str); 4] = [
         (RegressorChannel::Speed, "speed"),
@@ -133,7 +140,9 @@ fn inputs_remark(document: &TraceDocument) -> String {
     };
     let channels = CHANNELS.iter().filter(|(channel, _)| uses(*channel)).map(|(_, name)| *name);
     let inputs: Vec<&str> = std::iter::once("rudder").chain(channels).collect();
-    format!("Inputs of the models on every record: its recorded {}.", inputs.join(", "))
+    let ship_name = document.records.iter().find_map(|record| record.trial_particulars.ship_name.as_ref());
+    let ship = ship_name.map_or_else(String::new, |name| format!("{name}. "));
+    format!("{ship}Inputs of the models on every record: its recorded {}.", inputs.join(", "))
 }
 
 /// Key figure of a trace; `None` if no record was held out.
