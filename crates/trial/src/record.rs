@@ -120,7 +120,7 @@ pub enum TrialError {
 /// let heading = time.iter().map(|t| 0.3 * (t / 15.0).sin()).collect();
 /// let channels = [(Channel::Rudder, rudder), (Channel::Heading, heading)].into();
 /// let origin = RecordOrigin::Measured { file: "run.csv".into(), sha256: String::new() };
-/// let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() })?;
+/// let trial = Trial::new("run", origin, Columns { time, channels, unknown_columns: Vec::new() })?;
 /// assert_eq!((trial.len(), trial.duration(), trial.sampling_period()), (60, 59.0, 1.0));
 /// # Ok::<(), kempf_trial::TrialError>(())
 /// ```
