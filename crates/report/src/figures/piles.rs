@@ -35,7 +35,7 @@ pub(super) fn spread(items: &mut [PlacedItem], chart: &Chart, theme: &Theme, roo
         if !is_single(line[0].item) {
             continue;
         }
-        let radius = theme.marker * if line.len() < CROWD { 1.0 } else { CROWD_SIZE };
+        let radius = theme.marker * size_factor(line.len());
         let places: Vec<f64> = line.iter().map(|placed| abscissa(placed.item, chart)).collect();
         let lanes_beside = ((room - radius) / (STEP * radius)).max(0.0) as i32;
         for (placed, lane) in line.iter_mut().zip(lanes(&places, GAP * radius, lanes_beside)) {
@@ -43,6 +43,11 @@ pub(super) fn spread(items: &mut [PlacedItem], chart: &Chart, theme: &Theme, roo
             placed.radius = radius;
         }
     }
+}
+
+/// Factor of the size of the single marks of a line.
+fn size_factor(count: usize) -> f64 {
+    if count < CROWD { 1.0 } else { CROWD_SIZE }
 }
 
 /// Abscissa of a mark on the page, points; at the edge for a mark beyond the axis, NaN for a value without a place.
@@ -81,6 +86,11 @@ mod tests {
         assert_eq!(lanes(&[5.0, 0.0, 10.0], 3.0, 2), [0, 0, 0]);
         assert_eq!(lanes(&[1.0, 0.0, 2.0, 2.5, 3.0], 3.0, 2), [1, 0, -1, 2, 0]);
         assert_eq!(lanes(&[0.0, 0.0, f64::NAN], 3.0, 0), [0, 0, 0]);
+    }
+
+    #[test]
+    fn marks_of_a_crowd_are_smaller() {
+        assert_eq!([CROWD - 1, CROWD, CROWD + 1].map(size_factor), [1.0, CROWD_SIZE, CROWD_SIZE]);
     }
 
     #[test]
