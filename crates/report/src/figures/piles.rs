@@ -80,6 +80,37 @@ fn lanes(places: &[f64], gap: f64, beside: i32) -> Vec<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::{AxisSpec, NamedRows, Plot, RowsColumn};
+    use crate::palette::{CurveOrigin, CurveStyle, Marker};
+
+    /// Ordinate, relative to the first mark, and diameter of the marks of one row, in twentieths of a point.
+    fn drawn(values: &[f64], name: &str) -> Vec<[i32; 2]> {
+        let style = CurveStyle { marker: Marker::Circle, is_hollow: false, ..CurveOrigin::After.style() };
+        let row = values.iter().map(|value| RowItem::new(name, RowKind::Mark(style, *value, None))).collect();
+        let column = RowsColumn { x: AxisSpec::decimal("x"), rows: vec![row], ..RowsColumn::default() };
+        let data = NamedRows { names: vec!["row".into()], columns: vec![column], ..NamedRows::default() };
+        let drawing = Plot::from(data).draw("", &Theme::screen());
+        // Every mark has a white rim, and is drawn as a round point.
+        let points = drawing.svg().split("<path ").filter(|path| path.contains("h0\"") && !path.contains("#FFFFFF"));
+        let number = |text: &str, before: &str, after: &str| -> i32 {
+            let (_, tail) = text.split_once(before).expect("the number");
+            tail.split_once(after).expect("its end").0.parse().expect("a number")
+        };
+        let marks = points.map(|path| {
+            let point = path.split_once("d=\"M").expect("a path").1;
+            [number(point, " ", "h0"), number(path, "stroke-width=\"", "\"")]
+        });
+        let marks: Vec<[i32; 2]> = marks.collect();
+        marks.iter().map(|[y, width]| [y - marks[0][0], *width]).take(values.len()).collect()
+    }
+
+    /// A row has room for lanes a radius of 3 points and 5 % apart; marks with a name stay on their line.
+    #[test]
+    fn single_marks_at_one_value_are_drawn_above_each_other() {
+        assert_eq!(drawn(&[1.0, 1.0, 1.0, 3.0], ""), [[0, 120], [63, 120], [-63, 120], [0, 120]]);
+        assert_eq!(drawn(&[1.0; CROWD], "")[..3], [[0, 90], [47, 90], [-47, 90]]);
+        assert!(drawn(&[1.0, 1.0, 3.0], "named").iter().all(|[y, _]| *y == 0));
+    }
 
     #[test]
     fn marks_that_would_hide_each_other_are_in_different_lanes() {
