@@ -100,8 +100,10 @@ mod tests {
             let point = path.split_once("d=\"M").expect("a path").1;
             [number(point, " ", "h0"), number(path, "stroke-width=\"", "\"")]
         });
-        let marks: Vec<[i32; 2]> = marks.collect();
-        marks.iter().map(|[y, width]| [y - marks[0][0], *width]).take(values.len()).collect()
+        let mut marks: Vec<[i32; 2]> = marks.collect();
+        // The legend comes first.
+        marks.drain(..marks.len() - values.len());
+        marks.iter().map(|[y, width]| [y - marks[0][0], *width]).collect()
     }
 
     /// A row has room for lanes a radius of 3 points and 5 % apart; marks with a name stay on their line.
