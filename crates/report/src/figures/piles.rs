@@ -37,12 +37,16 @@ pub(super) fn spread(items: &mut [PlacedItem], chart: &Chart, theme: &Theme, roo
         }
         let radius = theme.marker * size_factor(line.len());
         let places: Vec<f64> = line.iter().map(|placed| abscissa(placed.item, chart)).collect();
-        let lanes_beside = ((room - radius) / (STEP * radius)).max(0.0) as i32;
-        for (placed, lane) in line.iter_mut().zip(lanes(&places, GAP * radius, lanes_beside)) {
+        for (placed, lane) in line.iter_mut().zip(lanes(&places, GAP * radius, lanes_beside(room, radius))) {
             placed.y += f64::from(lane) * STEP * radius / pitch;
             placed.radius = radius;
         }
     }
+}
+
+/// Number of lanes above a line, and below it, for marks that leave it by at most `room` points.
+fn lanes_beside(room: f64, radius: f64) -> i32 {
+    ((room - radius) / (STEP * radius)) as i32
 }
 
 /// Factor of the size of the single marks of a line.
@@ -124,6 +128,13 @@ mod tests {
     #[test]
     fn marks_of_a_crowd_are_smaller() {
         assert_eq!([CROWD - 1, CROWD, CROWD + 1].map(size_factor), [1.0, CROWD_SIZE, CROWD_SIZE]);
+    }
+
+    /// Radius 2 points, so lanes are 2.1 points apart: 2 + 2 · 2.1 = 6.2.
+    #[test]
+    fn lanes_keep_within_the_room() {
+        assert_eq!([2.0, 4.0, 4.2, 6.1, 6.3].map(|room| lanes_beside(room, 2.0)), [0, 0, 1, 1, 2]);
+        assert_eq!(lanes(&[0.0, 0.0], 1.0, lanes_beside(0.0, 2.0)), [0, 0]);
     }
 
     #[test]
