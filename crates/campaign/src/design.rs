@@ -66,6 +66,13 @@ pub struct CellFacts {
     pub cramer_rao_percent2: Option<[[f64; 2]; 2]>,
 }
 
+impl CellFacts {
+    /// Number of trials whose rows are stored.
+    pub fn trial_count(&self) -> u64 {
+        self.stored_replicates.end - self.stored_replicates.start
+    }
+}
+
 /// Records of one trial in a study of measured records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]

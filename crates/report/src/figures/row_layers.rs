@@ -98,7 +98,8 @@ const SPREAD: f64 = 1.8;
 pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult<Drawing> {
     let mut sheet = Sheet::new(theme, finding)?;
     sheet.legend(&entries(data, theme))?;
-    let pitch = pitch(data, theme);
+    let line_distance = line_distance(data, theme);
+    let pitch = pitch(data, theme, line_distance);
     let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
     let row = (TitledAxis::new(Axis::rows(&data.names, 0.6), data.names_title.as_str()), height);
     let across = match theme.is_narrow() {
@@ -119,7 +120,7 @@ pub(super) fn rows(data: &NamedRows, finding: &str, theme: &Theme) -> PlotResult
                 let (left, right) = chart.x.ends();
                 chart.rectangle([left, right], [row - 0.5, row + 0.5], HEADING.mix(GROUND))?;
             }
-            beyond |= draw(chart, theme, column, pitch, line_distance(data, theme))?;
+            beyond |= draw(chart, theme, column, pitch, line_distance)?;
             let lengths = column.rows.iter().flatten().filter_map(|item| bar_length(chart, item));
             lengths.for_each(|length| bars.add(length, theme));
         }
@@ -136,12 +137,12 @@ fn bar_length(chart: &Chart, item: &RowItem) -> Option<f64> {
     Some(right? - left?)
 }
 
-/// Distance of the rows, points.
-fn pitch(data: &NamedRows, theme: &Theme) -> f64 {
+/// Distance of the rows, points, whose lines are `line_distance` points apart.
+fn pitch(data: &NamedRows, theme: &Theme, line_distance: f64) -> f64 {
     let items = || data.columns.iter().flat_map(|column| &column.rows);
     let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, MAX_NAMES_SHARE * theme.width).len());
     let lines = LINE_SPACING * lines.max().unwrap_or(1).max(1) as f64;
-    let line = line_distance(data, theme) / theme.tick_font;
+    let line = line_distance / theme.tick_font;
     let stacked = line * items().map(|row| stacked(row)).max().unwrap_or(0) as f64 + 1.1;
     let is_high = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
     let usual = (lines + 0.95).max(stacked).max(if is_high { 2.6 } else { 0.0 }) * theme.tick_font;

@@ -53,17 +53,23 @@ pub fn parse_formula(line: &str) -> Result<Arc<Formula>, FormulaError> {
     Ok(formula)
 }
 
+/// Effect with this identifier and form, with neutral constants; `None` if there is no such effect. An identifier that
+/// is not on the list belongs to a formula, whose text is the form.
+pub fn effect_form(id: &str, form: &str) -> Option<Arc<dyn Effect>> {
+    let listed: Vec<Arc<dyn Effect>> = all_effects().into_iter().filter(|effect| effect.id() == id).collect();
+    match listed.is_empty() {
+        true => Some(Formula::named(id, form).ok()?),
+        false => listed.into_iter().find(|effect| effect.form() == form),
+    }
+}
+
 /// Effect with this identifier, form and constants ([`Effect::constants`]); `None` if there is no such effect, or if
-/// the number of constants differs. An identifier that is not on the list belongs to a formula, whose text is the form.
+/// the number of constants differs.
 ///
 /// A constant with a positive neutral value must be positive: an approach speed (m/s), a propeller rate (1/s), a length
 /// (m), an edge (s).
 pub fn find_effect(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
-    let listed: Vec<Arc<dyn Effect>> = all_effects().into_iter().filter(|effect| effect.id() == id).collect();
-    let effect = match listed.is_empty() {
-        true => Formula::named(id, form).ok()?,
-        false => listed.into_iter().find(|effect| effect.form() == form)?,
-    };
+    let effect = effect_form(id, form)?;
     let neutral = effect.constants();
     let can_be =
         |((neutral, _), value): (&(f64, Dimension), &f64)| value.is_finite() && (*value > 0.0 || *neutral == 0.0);
@@ -90,5 +96,12 @@ mod tests {
             find_effect("second_order", "", &[1.0]).is_none()
                 && find_effect("speed_loss", "measured speed", &[-1.0]).is_none()
         );
+    }
+
+    #[test]
+    fn an_identifier_on_no_list_is_that_of_a_formula() {
+        let own = effect_form("bank", "c * v").expect("a formula");
+        assert!(own.uses(crate::RegressorChannel::Sway) && !own.uses(crate::RegressorChannel::Wind));
+        assert!(effect_form("second_order", "c * v").is_none() && effect_form("bank", "c *").is_none());
     }
 }

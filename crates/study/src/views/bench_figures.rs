@@ -10,8 +10,8 @@ use report::number::counted;
 use report::palette::CurveStyle;
 use report::{CurveOrigin, PageFigure};
 
-use super::key_figure::TRACE_REMARK;
 use super::key_rows::tint;
+use super::remarks::TRACE_REMARK;
 
 /// Maximum ratio of a score to that of the reference; a larger one is shown as an arrow.
 const MAX_RATIO: f64 = 100.0;
@@ -111,15 +111,18 @@ fn share_scale(mut columns: Vec<RowsColumn>) -> Vec<RowsColumn> {
 }
 
 /// Remark under a figure of score ratios.
-fn ratio_note(boards: &[&Leaderboard], reference: &str) -> String {
+fn ratio_note(boards: &[&Leaderboard], BenchDocument { reference, methods, .. }: &BenchDocument) -> String {
     let score = match boards.iter().any(|board| board.task == BenchTask::Indices) {
         true => "rms heading error; for K and T the larger relative error",
         false => "rms heading error",
     };
     let mut note = format!(
         "Axes: score over that of {reference}, medians over n cases; left of the line a method is better than {reference}. \
-         Score: {score}. Intervals need six independent records. {TRACE_REMARK}"
+         Score: {score}. Intervals need six independent records."
     );
+    if methods.iter().any(|method| method.starts_with(TRACE_ID)) {
+        note += &format!(" {TRACE_REMARK}");
+    }
     if boards.iter().any(|board| board.cases < MIN_SUMMARISED_VALUES) {
         note += &format!(
             " Hollow: single cases if fewer than {MIN_SUMMARISED_VALUES}; near values are drawn above each other."
@@ -176,7 +179,7 @@ fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
     Some(NamedRows {
         names: rivals.iter().map(|method| (*method).clone()).collect(),
         columns: share_scale(boards.iter().map(column).collect()),
-        note: Some(ratio_note(&boards, &results.reference)),
+        note: Some(ratio_note(&boards, results)),
         ..NamedRows::default()
     })
 }

@@ -1,14 +1,13 @@
 //! Key figure of a study: its finding above it, T alone if a figure shows errors of K and of T, the highlighted series
 //! in colour and all others pale.
 
-use campaign::design::Design;
-use campaign::scenario::{Highlight, TRACE_ID};
+use campaign::scenario::Highlight;
 use report::figures::{
     CellMap, Layer, LayerKind, LayeredPanel, MapCell, Marks, Outline, PanelGroup, Panels, Pen, Plot,
 };
 use report::number::{counted, significant};
 use report::palette::{RECORD, UNHIGHLIGHTED};
-use report::{CurveOrigin, PageFigure, PlotCurve};
+use report::{CurveOrigin, PlotCurve};
 
 use campaign::statistics::{distinct, grouped, wilson_share};
 
@@ -17,40 +16,6 @@ use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
-
-/// Remark under a figure with traces.
-pub const TRACE_REMARK: &str = "A trace adds to a first-order model the effects that it lacks.";
-
-/// Remark on the number of trials behind every value, or its range over the cells; for measured records the meaning of
-/// n, whose value is in the name of each row.
-pub fn trials_remark(design: &Design) -> String {
-    if design.is_measured() {
-        return format!("n: predicted records. {TRACE_REMARK}");
-    }
-    let counts: Vec<u64> =
-        design.cells.iter().map(|cell| cell.stored_replicates.end - cell.stored_replicates.start).collect();
-    let each = if design.cells.len() > 1 { " each" } else { "" };
-    let trials = format!("{} simulated trials{each}.", count_range(&counts));
-    let has_trace = design.methods.iter().any(|method| method.id == TRACE_ID);
-    if has_trace { format!("{trials} {TRACE_REMARK}") } else { trials }
-}
-
-/// Range of counts as text: "4 to 40", or the count that all have.
-pub fn count_range(counts: &[u64]) -> String {
-    let [least, most] = [counts.iter().min(), counts.iter().max()].map(|end| end.copied().unwrap_or(0));
-    if least < most { format!("{least} to {most}") } else { most.to_string() }
-}
-
-/// Remark under a figure of simulated trials.
-pub const SIMULATED_REMARK: &str = "Simulated trials.";
-
-/// Puts the remark on its trials before the other remarks under a figure, or at the end of the caption of a zig-zag.
-pub fn add_trials_remark(figure: &mut PageFigure, remark: &str) {
-    match figure.plot.note_mut() {
-        Some(note) => *note = Some([Some(remark), note.as_deref()].into_iter().flatten().collect::<Vec<_>>().join(" ")),
-        None => figure.caption += &format!(" {remark}"),
-    }
-}
 
 /// A chart as the key figure of a study.
 pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {

@@ -34,6 +34,7 @@ pub mod prior_odds;
 pub mod publish;
 pub mod record_figures;
 pub mod record_study;
+pub mod remarks;
 pub mod scale_tables;
 pub mod staircase;
 pub mod studies_page;

@@ -8,7 +8,7 @@ use report::Table;
 use report::figures::{CellMap, MapCell, Outline, Shades};
 use report::number;
 
-use super::key_figure::count_range;
+use super::remarks::count_range;
 use super::tables::cell_head;
 use super::tracing_table::has_several_traces;
 

@@ -217,14 +217,14 @@ fn prediction_rows(design: &Design) -> Vec<(String, Vec<usize>)> {
     let labels = |axis: usize| distinct(design.cells.iter().map(|cell| cell.labels[axis].as_str())).len();
     let longest = (0..design.axes.len()).max_by_key(|&axis| labels(axis));
     let name = |cell: usize| {
-        let CellFacts { labels, stored_replicates: trials, .. } = &design.cells[cell];
+        let facts = &design.cells[cell];
         match longest.filter(|_| design.cells.len() > MAX_ROWS) {
-            Some(axis) => labels[axis].clone(),
+            Some(axis) => facts.labels[axis].clone(),
             // Records of measured rows differ in number.
             None if design.is_measured() => {
-                format!("{}{COUNT_PREFIX} {})", labels.join(", "), trials.end - trials.start)
+                format!("{}{COUNT_PREFIX} {})", facts.labels.join(", "), facts.trial_count())
             }
-            None => labels.join(", "),
+            None => facts.labels.join(", "),
         }
     };
     grouped(0..design.cells.len(), |&cell| name(cell))
@@ -255,8 +255,7 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
 /// Sentence on the maximum half width over the cells of the 95 % interval of a share of 90 %. Characteristics of a
 /// trial may be correlated, so each trial counts once. Measured records are not independent and have no interval.
 fn certainty(design: &Design) -> String {
-    let trials =
-        design.cells.iter().map(|cell| cell.stored_replicates.end - cell.stored_replicates.start).min().unwrap_or(0);
+    let trials = design.cells.iter().map(CellFacts::trial_count).min().unwrap_or(0);
     if design.is_measured() {
         return String::from(" Records of one ship are not independent: no intervals.");
     }

@@ -19,9 +19,9 @@ use report::number::{self, MISSING, significant};
 use report::palette::CurveStyle;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
-use super::key_figure::TRACE_REMARK;
 use super::key_rows::tint;
 use super::page_files::write_page;
+use super::remarks::{joined_remarks, trace_remark};
 use super::study_figures::{self, FigurePlace, StudyFigure};
 use super::{coverage_table, tables};
 use crate::options::FigureChoice;
@@ -172,9 +172,10 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
     let plot = NamedRows {
         names,
         columns: vec![column],
-        note: Some(format!(
-            "Pale: single records. Dark: medians of five or more, with intervals for six fits or more. {TRACE_REMARK}"
-        )),
+        note: Some(joined_remarks([
+            Some("Pale: single records. Dark: medians of five or more, with intervals for six fits or more."),
+            trace_remark(design),
+        ])),
         ..NamedRows::default()
     };
     PageFigure::new(JUDGED, finding(lines, design), caption, Plot::from(plot))

@@ -15,6 +15,7 @@ use super::key_figure;
 use super::outcomes;
 use super::page_files::KEY_FIGURE_STEM;
 use super::pooled_charts;
+use super::remarks;
 use super::trace_charts as traces;
 use super::tracing_table::has_several_traces;
 use campaign::design::Design;
@@ -82,20 +83,20 @@ pub fn chosen_figures(
             let mut key = PageFigure::new(KEY_FIGURE_STEM, finding, figure.caption.clone(), plot);
             match place {
                 FigurePlace::Chart | FigurePlace::AllTrials => {
-                    key_figure::add_trials_remark(&mut key, &key_figure::trials_remark(design));
+                    remarks::add_trials_remark(&mut key, &remarks::trials_remark(design));
                 }
                 _ if design.is_measured() => {}
-                FigurePlace::Traces => key_figure::add_trials_remark(
+                FigurePlace::Traces => remarks::add_trials_remark(
                     &mut key,
-                    &format!("{} {}", key_figure::SIMULATED_REMARK, key_figure::TRACE_REMARK),
+                    &format!("{} {}", remarks::SIMULATED_REMARK, remarks::TRACE_REMARK),
                 ),
-                _ => key_figure::add_trials_remark(&mut key, key_figure::SIMULATED_REMARK),
+                _ => remarks::add_trials_remark(&mut key, remarks::SIMULATED_REMARK),
             }
             (FigurePlace::Key, key)
         })
     });
     for (_, figure) in figures.iter_mut().filter(|_| !design.is_measured()) {
-        key_figure::add_trials_remark(figure, key_figure::SIMULATED_REMARK);
+        remarks::add_trials_remark(figure, remarks::SIMULATED_REMARK);
     }
     let named = output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
     for name in named.into_iter().flatten().filter(|name| !stems.contains(name)) {

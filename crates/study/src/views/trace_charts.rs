@@ -19,7 +19,7 @@ use campaign::design::Design;
 use campaign::statistics::{Statistic, distinct, grouped, wilson_share};
 use campaign::summary::{CALIBRATION_BIN_EDGES, CalibrationBin, TraceSummary};
 
-use super::key_figure::count_range;
+use super::remarks::count_range;
 
 /// Name of the row of ships without a missing effect, and of the column of trials in which no effect was named.
 const NOTHING: &str = "nothing";

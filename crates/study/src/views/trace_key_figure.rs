@@ -132,13 +132,10 @@ fn inputs_remark(document: &TraceDocument) -> String {
         (RegressorChannel::Wind, "wind"),
         (RegressorChannel::Propeller, "propeller rate"),
     ];
-    let named = &document.trace.effects;
-    let uses = |channel: RegressorChannel| {
-        let of_id =
-            |id: &str| ship::effects::all_effects().iter().any(|effect| effect.id() == id && effect.uses(channel));
-        named.iter().any(|effect| of_id(&effect.id))
-    };
-    let channels = CHANNELS.iter().filter(|(channel, _)| uses(*channel)).map(|(_, name)| *name);
+    let named = document.trace.effects.iter();
+    let named: Vec<_> = named.filter_map(|effect| ship::effects::effect_form(&effect.id, &effect.form)).collect();
+    let is_used = |channel: RegressorChannel| named.iter().any(|effect| effect.uses(channel));
+    let channels = CHANNELS.iter().filter(|(channel, _)| is_used(*channel)).map(|(_, name)| *name);
     let inputs: Vec<&str> = std::iter::once("rudder").chain(channels).collect();
     let ship_name = document.records.iter().find_map(|record| record.trial_particulars.ship_name.as_ref());
     let ship = ship_name.map_or_else(String::new, |name| format!("{name}. "));
