@@ -9,8 +9,8 @@ const LONGEST_FUNCTION: usize = 60;
 
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
-    code: 71_000,
-    tests: 31_950,
+    code: 71_060,
+    tests: 31_970,
     long_functions: 0,
     shared_types: 7,
     packages: 298,
@@ -18,7 +18,7 @@ const REACHED: Size = Size {
     text_lists: 0,
     leaks: 3,
     looked_up: 0,
-    largest_crate: 11_900,
+    largest_crate: 11_950,
 };
 
 /// Endings of sources in Rust, Python and JavaScript.

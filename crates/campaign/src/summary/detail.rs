@@ -1,7 +1,5 @@
 //! Error distributions of the cells shown in detail.
 
-use serde::{Deserialize, Serialize};
-
 use crate::statistics::OrderedSample;
 
 /// Number of abscissae of a density.
@@ -21,7 +19,7 @@ const REACH: f64 = 4.0;
 const SD_OVER_MAD: f64 = 1.482_602_2;
 
 /// Distribution of the errors of one index.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ErrorDensity {
     /// Pairs of an error, %, and its density, 1/%; empty for too few values and for equal quartiles.
     pub density: Vec<(f64, f64)>,
@@ -39,7 +37,7 @@ impl ErrorDensity {
 }
 
 /// Joint distribution of the errors of K and T, %.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct JointErrors {
     /// First pairs of errors of K and T, %, at most 400.
     pub points: Vec<(f64, f64)>,
@@ -79,21 +77,18 @@ impl JointErrors {
 }
 
 /// Distributions of the errors of one method.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct MethodDetail {
     /// Errors of K; `None` without values.
-    #[serde(rename = "violin_k")]
     pub k_errors: Option<ErrorDensity>,
     /// Errors of T; `None` without values.
-    #[serde(rename = "violin_t")]
     pub t_errors: Option<ErrorDensity>,
     /// Errors of K and T together; `None` below ten pairs.
-    #[serde(rename = "cloud")]
     pub joint_errors: Option<JointErrors>,
 }
 
 /// Error distributions in one cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CellDetail {
     /// Index of the cell.
     pub cell: usize,

@@ -3,7 +3,6 @@
 use std::fmt;
 
 use ::trace::TraceVerdict;
-use serde::{Deserialize, Serialize};
 
 use crate::rows::{LocatedMoment, NamedEffect, TraceRow};
 use crate::scenario::MissingPhysics;
@@ -18,7 +17,7 @@ pub const MAX_PERIOD_ERROR: f64 = 0.15;
 const TIME_EFFECTS: [&str; 2] = ["moment_drift", "transient_disturbance"];
 
 /// Agreement of the verdict of a trace with the missing physics of the simulated ship.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Judgement {
     /// Only correct effects were named.
     Right,
@@ -34,7 +33,6 @@ pub enum Judgement {
     /// Wrong effect or moment that the trace reports as an alias of the correct one.
     Alias,
     /// A wrong moment was located, or a wrong time-dependent effect named.
-    #[serde(rename = "Elsewhere")]
     WrongMoment,
     /// A wrong effect was named, or any effect although none is missing.
     Wrong,

@@ -1,7 +1,5 @@
 //! Summaries of methods: by cell, against the reference, and over all cells.
 
-use serde::{Deserialize, Serialize};
-
 use crate::statistics::Statistic;
 
 use super::detail::CellDetail;
@@ -10,10 +8,9 @@ use super::records::RecordSummary;
 use super::tracing::TraceSummary;
 
 /// Statistics of the relative errors of one index over trials: errors in %, shares from 0 to 1, `None` if undefined.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct IndexErrors {
     /// Mean estimate, SI units, with its normal interval.
-    #[serde(rename = "answer")]
     pub mean_estimate: Option<Statistic>,
     /// Mean error, %.
     pub mean: Option<Statistic>,
@@ -28,18 +25,14 @@ pub struct IndexErrors {
     /// 2.5, 25, 75 and 97.5 % quantiles of the error, %.
     pub quantiles: [Option<Statistic>; 4],
     /// Median absolute error, %.
-    #[serde(rename = "median_size")]
     pub median_absolute_error: Option<Statistic>,
     /// 90 % quantile of the absolute error, %.
-    #[serde(rename = "high_size")]
     pub absolute_error_p90: Option<Statistic>,
     /// Coverage of the quoted 95 % intervals.
     pub coverage: Option<Statistic>,
     /// Median width of the quoted 95 % intervals, relative to the truth, %.
-    #[serde(rename = "width")]
     pub median_interval_width: Option<Statistic>,
     /// Share of estimates with an interval.
-    #[serde(rename = "quoting")]
     pub share_with_interval: Option<Statistic>,
     /// Ratio of the standard deviation of the errors to the Cramér–Rao bound, of which the root mean square over trials
     /// is taken.
@@ -47,12 +40,11 @@ pub struct IndexErrors {
 }
 
 /// Performance of one method on a set of trials.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MethodPerformance {
     /// Number of trials run.
     pub trials: u64,
     /// Reasons for missing estimates, with counts, in order of first occurrence; at most 50.
-    #[serde(rename = "failures")]
     pub failure_counts: Vec<(String, u64)>,
     /// Share of trials without an estimate.
     pub failure_rate: Option<Statistic>,
@@ -67,10 +59,8 @@ pub struct MethodPerformance {
     /// Median heading error on the validation manoeuvre, deg.
     pub validation_rmse_deg: Option<Statistic>,
     /// 90 % quantile of the heading error on the validation manoeuvre, deg.
-    #[serde(rename = "high_validation_rmse_deg")]
     pub validation_rmse_p90_deg: Option<Statistic>,
     /// Mean number of model evaluations per estimate; `None` without an estimate.
-    #[serde(rename = "evaluations")]
     pub mean_evaluations: Option<f64>,
 }
 
@@ -82,31 +72,29 @@ impl MethodPerformance {
 }
 
 /// Performance of one method in one cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct MethodSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
     /// Performance of the method.
-    #[serde(rename = "record")]
     pub performance: MethodPerformance,
 }
 
 /// Comparison of one index of one method with the reference, on trials with an estimate of both.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ErrorComparison {
     /// Difference of the rms errors, %; negative if the method is better.
     pub rms_difference: Option<Statistic>,
     /// Ratio of the rms errors, method over reference.
     pub rms_ratio: Option<Statistic>,
     /// Share of trials in which the error of the method is smaller; ties count half.
-    #[serde(rename = "closer")]
     pub smaller_error_share: Option<Statistic>,
 }
 
 /// Comparison of one method with the reference method in one cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceComparison {
     /// Index of the cell.
     pub cell: usize,
@@ -121,12 +109,11 @@ pub struct ReferenceComparison {
 }
 
 /// Summary of a study.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Summary {
     /// Summaries per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
     /// Comparisons per cell and method other than the reference.
-    #[serde(rename = "pairs")]
     pub comparisons: Vec<ReferenceComparison>,
     /// Index of the reference method.
     pub reference: usize,

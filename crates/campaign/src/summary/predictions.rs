@@ -5,20 +5,18 @@ use std::sync::LazyLock;
 
 use estimation::statistics::median;
 use predict::imo::imo_limit;
-use serde::{Deserialize, Serialize};
 
 use crate::rows::{PredictedCharacteristic, StudyRow};
 use crate::statistics::{Statistic, wilson_share};
 
 /// Predictions of one characteristic of a manoeuvre by one method in one cell.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PredictionSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method.
     pub method: usize,
     /// Manoeuvre and characteristic, with the unit.
-    #[serde(rename = "name")]
     pub characteristic: Box<str>,
     /// Number of trials with the characteristic.
     pub trials: u64,
@@ -84,14 +82,13 @@ impl ConformalScaling {
 
 /// Decisions on an IMO criterion: a 90 % interval on one side of the limit is a decision with a probability of at least
 /// 95 %.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImoDecisionTally {
     /// Name of the criterion.
     pub name: Box<str>,
     /// Maximum allowed value, in the unit of the characteristic.
     pub limit: f64,
     /// Number of trials whose ship meets the criterion.
-    #[serde(rename = "kept")]
     pub meeting_trials: u64,
     /// Number of trials with a correct decision.
     pub right: u64,

@@ -6,14 +6,13 @@
 use std::collections::BTreeMap;
 
 use estimation::statistics::median;
-use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::rows::StudyRow;
 use crate::statistics::{Statistic, percentile_interval, resample_clusters};
 
 /// Replay errors of one method on the records of a cell.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RecordSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -26,7 +25,6 @@ pub struct RecordSummary {
     /// Median over fits of the heading error on the fitted records, deg.
     pub fitted_deg: Option<Statistic>,
     /// Median over trials of the heading error on the validation record, deg.
-    #[serde(rename = "judged_deg")]
     pub validation_deg: Option<Statistic>,
     /// Median over trials of the ratio of validation errors, this method over the first; `None` for the first
     /// method.

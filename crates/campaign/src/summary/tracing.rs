@@ -5,7 +5,6 @@ use std::ops::AddAssign;
 use std::sync::LazyLock;
 
 use ::trace::TraceVerdict;
-use serde::{Deserialize, Serialize};
 
 use super::judgement::Judgement;
 use crate::design::CellFacts;
@@ -18,52 +17,40 @@ use crate::statistics::{Statistic, wilson_share};
 pub const MIN_CLEAR_MARGIN: f64 = 10.0;
 
 /// Counts over the traces of one method in one cell.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
     /// Index of the method, a trace.
     pub method: usize,
     /// Identifiers of the missing effects.
-    #[serde(rename = "missing")]
     pub missing_effects: Vec<String>,
     /// Number of trials by judgement, in a study that states the missing physics.
-    #[serde(rename = "judged", default, skip_serializing_if = "BTreeMap::is_empty")]
     pub judgements: BTreeMap<Judgement, u64>,
     /// Number of trials.
     pub trials: u64,
     /// Number of trials by verdict, in the order of [`TraceVerdict::ALL`].
-    #[serde(rename = "verdicts")]
     pub verdict_counts: [u64; TraceVerdict::ALL.len()],
     /// Number of trials by named effect.
-    #[serde(rename = "named")]
     pub named_effect_counts: BTreeMap<String, u64>,
     /// Number of trials by effect named as an alias of a missing one.
-    #[serde(rename = "aliases")]
     pub named_alias_counts: BTreeMap<String, u64>,
     /// Number of trials without any named effect.
-    #[serde(rename = "silent")]
     pub nothing_named_count: u64,
     /// Number of trials whose named groups contain every missing effect, or one of the effects that a formula stands
     /// for.
-    #[serde(rename = "complete")]
     pub all_named_count: u64,
     /// Number of trials with a named group that contains no missing effect; for a hull, whose missing effects are not
     /// defined, a group of weather effects alone.
-    #[serde(rename = "wrong")]
     pub falsely_named_count: u64,
     /// Number of trials in which exactly the missing effects were named, or correctly none.
-    #[serde(rename = "exact")]
     pub exactly_named_count: u64,
     /// Number of trials with a clear margin for the one missing effect, and number of those that name it.
-    #[serde(rename = "clear")]
     pub clearly_separable: [u64; 2],
     /// Mean over the trials of the expected 2 ln Λ (twice the log-likelihood ratio) of the truth against the nearest
     /// first-order response; `None` if no trial has one.
-    #[serde(rename = "expected")]
     pub mean_expected_2_ln_lambda: Option<f64>,
     /// Mean coverage of the heading band, on the trial and on the validation manoeuvre; `None` without a band.
-    #[serde(rename = "band")]
     pub band_coverage: [Option<f64>; 2],
     /// Calibration of the probabilities of effects, by the bins between [`CALIBRATION_BIN_EDGES`]; all counts are 0 for
     /// a hull.
@@ -74,16 +61,13 @@ pub struct TraceSummary {
 pub const CALIBRATION_BIN_EDGES: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
 /// Bin of a calibration table.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CalibrationBin {
     /// Number of pairs of effect and trial in the bin.
-    #[serde(rename = "effects")]
     pub effect_count: u64,
     /// Number of these pairs with the effect present.
-    #[serde(rename = "present")]
     pub present_count: u64,
     /// Sum of the probabilities.
-    #[serde(rename = "sum")]
     pub probability_sum: f64,
 }
 

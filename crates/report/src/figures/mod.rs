@@ -61,6 +61,23 @@ impl Plot {
         }
     }
 
+    /// Names of the layers, panels, rows and items that are drawn.
+    pub fn series_names(&self) -> Vec<&str> {
+        match self {
+            Self::Panels(data) => {
+                let panels = data.groups.iter().flat_map(|group| &group.panels);
+                let names = panels.flat_map(|panel| panel.layers.iter().map(|layer| &layer.name).chain([&panel.head]));
+                names.flatten().map(String::as_str).collect()
+            }
+            Self::Rows(data) => {
+                let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
+                items.filter_map(|item| item.name.as_ref()).chain(&data.names).map(String::as_str).collect()
+            }
+            Self::Cells(data) => data.panels.iter().filter_map(|(name, _)| name.as_deref()).collect(),
+            Self::ZigZag(_) => Vec::new(),
+        }
+    }
+
     /// Titles of the numeric axes, without italics: the keys of the limits in a style.
     pub fn axis_titles(&self) -> Vec<String> {
         let rulers: Vec<AxisSpec> = match self {

@@ -1,5 +1,7 @@
 //! Drawing of [`NamedRows`]: rows over their axes, with their numbers at the right end.
 
+use std::collections::HashSet;
+
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
@@ -72,8 +74,11 @@ fn limit_stroke(theme: &Theme) -> Stroke {
 /// Stroke of a range: pale, so that marks on it are visible, and higher than a mark, so that a narrow one is visible
 /// too.
 fn range_stroke(colour: RGBColor, theme: &Theme) -> Stroke {
-    Stroke { opacity: 0.25, ..Stroke::solid(colour, 2.9 * theme.marker) }
+    Stroke { opacity: 0.25, ..Stroke::solid(colour, RANGE_HEIGHT * theme.marker) }
 }
+
+/// Height of a range, in sizes of a mark.
+const RANGE_HEIGHT: f64 = 2.9;
 
 /// Maximum number of rows for columns above each other in a narrow figure.
 const FEW: usize = 8;
@@ -154,12 +159,15 @@ fn pitch(data: &NamedRows, theme: &Theme, line_distance: f64) -> f64 {
     }
 }
 
-/// Distance of two lines of a row, points; larger if single marks have to be spread.
+/// Distance of two lines of a row, points; larger if single marks have to be spread, or if ranges would overlap.
 fn line_distance(data: &NamedRows, theme: &Theme) -> f64 {
     let is_spread = |item: &RowItem| item.place == RowPlace::SameLine && is_single(item);
-    let mut rows = data.columns.iter().flat_map(|column| &column.rows);
-    let has_singles = rows.any(|row| row.windows(2).any(|pair| pair.iter().all(is_spread)));
-    theme.tick_font * if has_singles { 1.3 } else { 0.62 }
+    let is_range = |item: &RowItem| item.place == RowPlace::Below && matches!(item.kind, RowKind::WideInterval(..));
+    let rows = || data.columns.iter().flat_map(|column| &column.rows);
+    let has_singles = rows().any(|row| row.windows(2).any(|pair| pair.iter().all(is_spread)));
+    let has_ranges = rows().any(|row| row.iter().filter(|item| is_range(item)).count() > 1);
+    let usual = theme.tick_font * if has_singles { 1.3 } else { 0.62 };
+    usual.max(if has_ranges { 1.1 * RANGE_HEIGHT * theme.marker } else { 0.0 })
 }
 
 /// Number of items of a row that are on separate lines below each other.
@@ -245,7 +253,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_dist
         for ((number, style), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
             chart.canvas.text_with_halo((right, y), number)?;
             right -= width;
-            if let Some(style) = style.filter(|_| widths.len() > 1) {
+            if let Some(style) = style.filter(|_| has_several_markers(column)) {
                 let place = page_units((right + theme.small_font, y));
                 chart.canvas.draw_elements(marker(place, 0.8 * theme.marker, style))?;
             }
@@ -345,8 +353,14 @@ fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a
     items.iter().filter_map(number).collect()
 }
 
+/// `true` if marks of a row differ in shape, so that a number needs its mark.
+fn has_several_markers(column: &RowsColumn) -> bool {
+    let marker = |item: &RowItem| if let RowKind::Mark(style, ..) = &item.kind { Some(style.marker) } else { None };
+    column.rows.iter().any(|row| row.iter().filter_map(marker).collect::<HashSet<_>>().len() > 1)
+}
+
 /// Widths of the columns of numbers at the right end of the rows, points; the last number of every row is in the last
-/// column. Each of several columns has room for a mark.
+/// column. If the marks differ in shape, each number has room for its mark.
 fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
     let mut widths: Vec<f64> = Vec::new();
     for items in &column.rows {
@@ -356,7 +370,7 @@ fn number_widths(column: &RowsColumn, theme: &Theme) -> Vec<f64> {
         }
     }
     widths.reverse();
-    let marked = if widths.len() > 1 { theme.small_font } else { 0.0 };
+    let marked = if has_several_markers(column) { theme.small_font } else { 0.0 };
     widths.iter().map(|width| width + marked).collect()
 }
 
@@ -399,17 +413,38 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::palette::UNHIGHLIGHTED;
+    use crate::palette::{Marker, UNHIGHLIGHTED};
+
+    /// Row of marks of these shapes, each with a number.
+    fn numbered(markers: &[Marker]) -> RowsColumn {
+        let style = |marker| CurveStyle { colour: UNHIGHLIGHTED, marker, ..CurveOrigin::Truth.style() };
+        let item =
+            |&marker| RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", style(marker), 1.0, None) };
+        RowsColumn { rows: vec![markers.iter().map(item).collect()], ..RowsColumn::default() }
+    }
 
     #[test]
-    fn numbers_are_dark_and_have_room_for_their_marks() {
-        let style = CurveStyle { colour: UNHIGHLIGHTED, ..CurveOrigin::Truth.style() };
-        let item = RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", style, 1.0, None) };
-        let column = |items: usize| RowsColumn { rows: vec![vec![item.clone(); items]], ..RowsColumn::default() };
+    fn numbers_are_dark_and_have_room_for_their_marks_where_these_differ() {
         let theme = Theme::screen();
-        let [single, both] = [1, 2].map(|items| number_widths(&column(items), &theme));
-        assert!(both.len() == 2 && both[0] > single[0]);
-        let is_dark = |(number, own): (TextLine, Option<&CurveStyle>)| number.colour == INK && own == Some(&style);
-        assert!(numbers(&column(2).rows[0], &theme).into_iter().all(is_dark));
+        let widths = |markers: &[Marker]| number_widths(&numbered(markers), &theme);
+        let [single, alike, both] =
+            [&[Marker::Circle][..], &[Marker::Circle; 2], &[Marker::Circle, Marker::Star]].map(widths);
+        assert_eq!(alike, [single[0]; 2]);
+        assert_eq!(both, [single[0] + theme.small_font; 2]);
+        let column = numbered(&[Marker::Star]);
+        let written = numbers(&column.rows[0], &theme);
+        assert!(written.iter().all(|(number, style)| number.colour == INK && style.is_some()));
+    }
+
+    #[test]
+    fn two_ranges_of_a_row_do_not_overlap() {
+        let theme = Theme::screen();
+        let range = || RowItem { place: RowPlace::Below, ..RowItem::new("", RowKind::WideInterval(INK, [0.0, 1.0])) };
+        let distance = |count: usize| {
+            let column = RowsColumn { rows: vec![vec![range(); count]], ..RowsColumn::default() };
+            line_distance(&NamedRows { columns: vec![column], ..NamedRows::default() }, &theme)
+        };
+        let height = range_stroke(INK, &theme).width;
+        assert!(distance(2) > height && distance(1) < distance(2), "{} {height}", distance(2));
     }
 }

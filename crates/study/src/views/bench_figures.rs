@@ -117,8 +117,8 @@ fn ratio_note(boards: &[&Leaderboard], BenchDocument { reference, methods, .. }:
         false => "rms heading error",
     };
     let mut note = format!(
-        "Axes: score over that of {reference}, medians over n cases; left of the line a method is better than {reference}. \
-         Score: {score}. Intervals need six independent records."
+        "Error ratio: error over that of {reference}, medians over n cases; left of the line a method is better than \
+         {reference}. Error: {score}. Intervals need six independent records."
     );
     if methods.iter().any(|method| method.starts_with(TRACE_ID)) {
         note += &format!(" {TRACE_REMARK}");
@@ -168,7 +168,7 @@ fn ratios(results: &BenchDocument, study: &str) -> Option<NamedRows> {
         RowsColumn {
             x: AxisSpec::new(
                 // Unbreakable, so that the number stays on one line.
-                format!("{} (n\u{a0}=\u{a0}{})", axis_title(board.task), board.cases),
+                format!("error ratio, {} (n\u{a0}=\u{a0}{})", axis_title(board.task), board.cases),
                 TickRule::Logarithmic,
             ),
             reference: Some(ReferenceBand95::line_at(1.0)),

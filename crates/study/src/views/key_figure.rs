@@ -12,13 +12,14 @@ use report::{CurveOrigin, PlotCurve};
 use campaign::statistics::{distinct, grouped, wilson_share};
 
 use super::charts::{EXACT_NOTE, MIN_ERROR};
-use super::key_rows::{highlight_rows, is_of_k, is_quiet, unit_suffix};
+use super::key_rows::{highlight_rows, is_of_k, is_quiet, ratio_text, unit_suffix};
+use super::remarks::sd_half_width_percent;
 
 /// Maximum share of the range of the highlighted data by which other data may widen the axes.
 const ASIDE: f64 = 0.25;
 
-/// A chart as the key figure of a study.
-pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
+/// A chart as the key figure of a study with `trials` trials in a cell.
+pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight, trials: u64) -> Plot {
     let remark = match &mut plot {
         Plot::Panels(data) => of_panels(data, highlight),
         Plot::Rows(data) => highlight_rows(data, highlight),
@@ -29,11 +30,20 @@ pub fn highlighted_chart(mut plot: Plot, highlight: &Highlight) -> Plot {
         Plot::ZigZag(_) => None,
     };
     let over_bound = highlight.over_bound.then(|| String::from("×: times the Cramér–Rao bound, methods in colour."));
+    let at_bound = (has_bound(&plot) && trials > 0).then(|| {
+        format!("95 % interval of an error at the bound: ±{} %.", significant(sd_half_width_percent(trials), 2))
+    });
     if let Some(note) = plot.note_mut() {
-        let remarks: Vec<String> = over_bound.into_iter().chain(note.take()).chain(remark).collect();
+        let remarks: Vec<String> = over_bound.into_iter().chain(at_bound).chain(note.take()).chain(remark).collect();
         *note = Some(remarks.join(" ")).filter(|note| !note.is_empty());
     }
     plot
+}
+
+/// `true` if a chart of errors has a Cramér–Rao bound.
+fn has_bound(plot: &Plot) -> bool {
+    let is_of_errors = plot.axis_titles().iter().any(|title| title.starts_with("rms"));
+    is_of_errors && plot.series_names().contains(&CurveOrigin::Bound.label())
 }
 
 /// Layers that are not highlighted, in pale colours. Several layers share a single name, at the median of the lines
@@ -75,7 +85,7 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     let Highlight { rows, over_bound, .. } = highlight;
     let points: Vec<f64> = rows.iter().filter_map(|label| label.parse().ok()).collect();
     let mut notes = Vec::new();
-    let (mut are_exact, mut are_cut, mut are_low, mut are_missing) = (false, false, false, false);
+    let [mut are_exact, mut are_cut, mut are_low, mut are_missing, mut are_hidden] = [false; 5];
     let mut has_grey = false;
     let marks = |layer: &Layer| layer.name.clone().filter(|_| matches!(layer.kind, LayerKind::Marks(_)));
     for group in &mut data.groups {
@@ -97,6 +107,10 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
             are_cut |= quiet.iter().any(|layer| layer.curve.y.iter().any(|y| y.is_infinite()));
             has_grey |= !quiet.is_empty();
             are_missing |= quiet.len() < quiet_names.len();
+            let lone = quiet.iter().filter(|_| quiet_names.len() == 1);
+            let lines: Vec<&Layer> = shown.iter().chain(lone).collect();
+            are_hidden |=
+                lines.iter().enumerate().any(|(k, line)| lines[..k].iter().any(|other| coincide(line, other)));
             are_low |= quiet.iter().any(|layer| layer.curve.y.contains(&MIN_ERROR));
             panel.layers = paled(quiet, &quiet_names);
             let values = point_values(&shown, &points, &unit);
@@ -116,9 +130,22 @@ fn of_panels(data: &mut Panels, highlight: &Highlight) -> Option<String> {
     data.note.take_if(|note| note == EXACT_NOTE && !are_exact);
     notes.extend(are_cut.then(|| String::from("Grey lines end where an error exceeds 100 %.")));
     notes.extend(are_low.then(|| String::from("Grey lines leave at the bottom where they are exact.")));
+    notes.extend(are_hidden.then(|| String::from("Lines that cannot be seen lie under others.")));
     notes.extend(are_missing.then(|| String::from("Methods without an answer have no line.")));
     data.clipping_note = has_grey.then(|| String::from("Some grey lines lie beyond the axes."));
     (!notes.is_empty()).then(|| notes.join(" "))
+}
+
+/// Maximum relative difference of values whose marks cannot be told apart.
+const INDISTINGUISHABLE: f64 = 0.1;
+
+/// `true` if two layers of marks have indistinguishable values at every abscissa of the first.
+fn coincide(layer: &Layer, other: &Layer) -> bool {
+    let is_at = |(x, y): (f64, f64)| {
+        other.curve.finite_pairs().any(|(at, value)| at == x && (y - value).abs() <= INDISTINGUISHABLE * value.abs())
+    };
+    let are_marks = [layer, other].iter().all(|layer| matches!(layer.kind, LayerKind::Marks(_)));
+    are_marks && layer.curve.finite_pairs().next().is_some() && layer.curve.finite_pairs().all(is_at)
 }
 
 /// Range of the values of marks in multiples of the Cramér–Rao bound of their panel; `None` without bound.
@@ -127,7 +154,7 @@ fn shown_over_bound(layers: &[Layer]) -> Option<String> {
     let marks = layers.iter().filter(|layer| matches!(layer.kind, LayerKind::Marks(_)));
     let ratio = |(x, y): (f64, f64)| bound.curve.finite_pairs().find(|(at, _)| *at == x).map(|(_, bound)| y / bound);
     let ratios = || marks.clone().flat_map(|layer| layer.curve.finite_pairs()).filter_map(ratio);
-    let [least, most] = [ratios().reduce(f64::min)?, ratios().reduce(f64::max)?].map(|ratio| significant(ratio, 2));
+    let [least, most] = [ratios().reduce(f64::min)?, ratios().reduce(f64::max)?].map(ratio_text);
     Some(if least == most { format!("{least}×") } else { format!("{least}–{most}×") })
 }
 
@@ -259,7 +286,9 @@ mod tests {
             panels: (0..4).flat_map(|row| [panel(0, row), panel(1, row)]).collect(),
             ..PanelGroup::default()
         };
-        let Plot::Panels(data) = highlighted_chart(Panels::new(group).into(), &about_output_error()) else { panic!() };
+        let Plot::Panels(data) = highlighted_chart(Panels::new(group).into(), &about_output_error(), 100) else {
+            panic!()
+        };
         let panels = &data.groups[0].panels;
         let row_of = |panel: &LayeredPanel| panel.layers[0].curve.x[0] as usize;
         assert_eq!(panels.iter().map(row_of).collect::<Vec<_>>(), [1, 1, 3, 3]);
@@ -269,7 +298,7 @@ mod tests {
         assert_eq!(names, [Some("srivc"), Some("output-error")]);
         let LayerKind::Marks(marks) = &panels[0].layers[0].kind else { panic!() };
         assert_eq!((marks.style.colour, panels[0].layers[0].max_axis_widening), (UNHIGHLIGHTED, Some(ASIDE)));
-        assert_eq!(data.note, None);
+        assert_eq!(data.note.as_deref(), Some("Lines that cannot be seen lie under others."));
     }
 
     #[test]
@@ -286,7 +315,7 @@ mod tests {
             columns: vec![column("error of K [%]"), column("error of T [%]")],
             ..NamedRows::default()
         };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &about_output_error()) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &about_output_error(), 100) else { panic!() };
         assert_eq!(data.columns.len(), 1);
         let row = &data.columns[0].rows[0];
         assert_eq!(row[0].name.as_deref(), Some("output-error"));
@@ -306,7 +335,7 @@ mod tests {
         let rows =
             NamedRows { names: vec!["5/5".into(), "20/20".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { rows: vec![String::from("20/20")], ..Highlight::default() };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, 100) else { panic!() };
         let shown = |row: usize| match &data.columns[0].rows[row][0] {
             RowItem { kind: RowKind::Mark(drawn, ..), number, .. } => {
                 (drawn.colour == tint(style.colour), number.as_deref())
@@ -336,7 +365,7 @@ mod tests {
         ];
         let group = PanelGroup::over(
             AxisSpec::decimal("executes"),
-            vec![(PanelRow::new(AxisSpec::decimal("T [%]"), 0.2), layers)],
+            vec![(PanelRow::new(AxisSpec::decimal("rms error of T [%]"), 0.2), layers)],
         );
         let highlight = Highlight {
             series: vec!["output-error".into()],
@@ -345,7 +374,7 @@ mod tests {
             over_bound: true,
         };
         let data = Panels { note: Some(String::from("Marks.")), ..Panels::new(group) };
-        let Plot::Panels(data) = highlighted_chart(data.into(), &highlight) else { panic!() };
+        let Plot::Panels(data) = highlighted_chart(data.into(), &highlight, 100) else { panic!() };
         let layers = &data.groups[0].panels[0].layers;
         let labels = layers.iter().filter_map(|layer| match &layer.kind {
             LayerKind::Labels(labels) => Some((layer.curve.x.clone(), labels.clone())),
@@ -362,10 +391,11 @@ mod tests {
         let [(name, ends, widening), (None, gap, _)] = &pale[..] else { panic!("{pale:?}") };
         assert_eq!((*name, &ends[..], *widening), (Some("2 other methods"), &[9.0, 27.0][..], Some(ASIDE)));
         assert!(gap.iter().all(|y| y.is_nan()));
-        let note =
-            "×: times the Cramér–Rao bound, methods in colour. Marks. Grey lines end where an error exceeds 100 %.";
+        // Of 100 trials: 1.96 / √200.
+        let note = "×: times the Cramér–Rao bound, methods in colour. 95 % interval of an error at the bound: ±14 %. \
+                    Marks. Grey lines end where an error exceeds 100 %. Lines that cannot be seen lie under others.";
         assert_eq!(data.note.as_deref(), Some(note));
-        assert_eq!(data.groups[0].panels[0].result.as_deref(), Some("1.2–2.5×"));
+        assert_eq!(data.groups[0].panels[0].result.as_deref(), Some("1.25–2.5×"));
     }
 
     #[test]
@@ -380,7 +410,7 @@ mod tests {
             note: None,
         };
         let highlight = Highlight { rows: vec![String::from("tug")], ..Highlight::default() };
-        let Plot::Cells(data) = highlighted_chart(map.clone().into(), &highlight) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.clone().into(), &highlight, 100) else { panic!() };
         assert_eq!(data.rows, ["known (2 kinds)", "unknown (1 kind)", "unknown: tug"]);
         let values: Vec<_> = data.panels[0].1.iter().map(|row| row[0].value).collect();
         assert_eq!(values, [Some(95.0), Some(80.0), Some(62.0)]);
@@ -388,7 +418,7 @@ mod tests {
         let interval = data.panels[0].1[0][0].interval.expect("of 20 trials");
         assert!((interval[0] - 76.4).abs() < 0.1 && (interval[1] - 99.1).abs() < 0.1, "{interval:?}");
         let highlight = Highlight { rows: vec![String::from("known: c, right")], ..Highlight::default() };
-        let Plot::Cells(data) = highlighted_chart(map.into(), &highlight) else { panic!() };
+        let Plot::Cells(data) = highlighted_chart(map.into(), &highlight, 100) else { panic!() };
         assert_eq!(
             data.panels[0].1.iter().map(|row| row[0].outline).collect::<Vec<_>>(),
             [None, None, Some(Outline::Finding), None]
@@ -404,7 +434,7 @@ mod tests {
         let column = RowsColumn { rows: vec![violin(-20.2), violin(1.0)], ..RowsColumn::default() };
         let rows = NamedRows { names: vec!["srivc".into(), "b".into()], columns: vec![column], ..NamedRows::default() };
         let highlight = Highlight { series: vec![String::from("srivc")], ..Highlight::default() };
-        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight) else { panic!() };
+        let Plot::Rows(data) = highlighted_chart(rows.into(), &highlight, 100) else { panic!() };
         let text = |row: usize| data.columns[0].rows[row][0].number.as_deref();
         assert_eq!((text(0), text(1)), (Some("−20 (−30 to 5.0)"), Some("1.0 (−30 to 5.0)")));
     }

@@ -41,6 +41,11 @@ pub fn tint(colour: RGBColor) -> RGBColor {
     RGBColor(pale(colour.0), pale(colour.1), pale(colour.2))
 }
 
+/// Ratio of an error to its bound, with hundredths near the bound.
+pub fn ratio_text(ratio: f64) -> String {
+    if ratio < 2.0 { fixed(ratio, 2) } else { significant(ratio, 2) }
+}
+
 /// Highlights rows; returns a remark on the dark rows, `None` if no row is pale.
 pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<String> {
     let about = &highlight.method_labels();
@@ -69,15 +74,26 @@ pub fn highlight_rows(data: &mut NamedRows, highlight: &Highlight) -> Option<Str
         sort_rows(data, rows);
     }
     for row in data.columns.iter_mut().flat_map(|column| &mut column.rows) {
-        let (quiet, shown) = row.drain(..).partition(|item| is_quiet(item.name.as_ref(), about));
-        *row = shown;
+        let (quiet, shown): (Vec<RowItem>, _) = row.drain(..).partition(|item| is_quiet(item.name.as_ref(), about));
+        *row = if about.len() == 1 { shown.into_iter().map(filled).collect() } else { shown };
         row.extend(pale(quiet, &quiet_names));
     }
     if rows.is_empty() {
         return None;
     }
     data.columns.iter_mut().for_each(|column| pale_rows(column, &data.names, rows, *over_bound));
-    data.names.iter().any(|name| is_pale(name, rows)).then(|| String::from("Dark: the rows of the title."))
+    data.names
+        .iter()
+        .any(|name| name != ALL_CELLS_ROW && is_pale(name, rows))
+        .then(|| String::from("Dark: the rows of the title."))
+}
+
+/// The item with a filled mark: hollow marks distinguish series, and a single highlighted series is distinct.
+fn filled(mut item: RowItem) -> RowItem {
+    if let RowKind::Mark(style, ..) = &mut item.kind {
+        style.is_hollow = false;
+    }
+    item
 }
 
 /// `true` for a row that is not highlighted.
@@ -129,7 +145,7 @@ fn pale_rows(column: &mut RowsColumn, names: &[String], about: &[String], over_b
             let is_quiet = style.colour == UNHIGHLIGHTED;
             if !(is_quiet || is_long && is_pale) {
                 item.number = Some(match limit {
-                    Some(limit) => format!("{}×", significant(*value / limit, 2)),
+                    Some(limit) => format!("{}×", ratio_text(*value / limit)),
                     None if unit.is_empty() => fixed(*value, 2),
                     None => format!("{}{unit}", significant(*value, 2)),
                 });

@@ -25,6 +25,7 @@ pub mod outcomes;
 pub mod overshoots;
 pub mod page_files;
 pub mod pooled_charts;
+pub mod power_charts;
 pub mod predict_curves;
 pub mod predict_figures;
 pub mod predict_form;

@@ -12,12 +12,12 @@ use super::remarks::count_range;
 use super::tables::cell_head;
 use super::tracing_table::has_several_traces;
 
-/// Kind of a ship by what it lacks: a known effect, an unknown moment, or nothing; for figures and files.
+/// Kind of a ship by what its model lacks: a listed effect, an unlisted moment, or nothing; for figures and files.
 fn kind(physics: &MissingPhysics) -> &'static str {
     match physics {
-        MissingPhysics::Listed { .. } => "known",
-        MissingPhysics::Unlisted { .. } => "unknown",
-        MissingPhysics::Nothing { .. } => "nothing missing",
+        MissingPhysics::Listed { .. } => "listed",
+        MissingPhysics::Unlisted { .. } => "unlisted",
+        MissingPhysics::Nothing { .. } => "nothing",
     }
 }
 
@@ -64,17 +64,16 @@ pub fn outcome_map(design: &Design, lines: &[TraceSummary]) -> Option<(String, C
     };
     let cells = ships.iter().map(|(_, lines)| Judgement::ALL.map(|judgement| cell(lines, judgement)).to_vec());
     let cells: Vec<Vec<MapCell>> = cells.collect();
-    let finding = format!("Right: known effects {}, unknown effects {}", right("known"), right("unknown"));
+    let finding = format!("Right: listed effects {}, unlisted effects {}", right("listed"), right("unlisted"));
     let counts: Vec<u64> = ships.iter().map(|(_, lines)| trials(lines)).collect();
     let map = CellMap {
-        axis_titles: [String::from("answer of the trace"), String::from("ship")],
+        axis_titles: [String::from("answer of the trace"), String::from("what is missing")],
         columns: Judgement::ALL.map(|judgement| judgement.to_string()).to_vec(),
         rows: ships.into_iter().map(|(name, _)| name).collect(),
         shades: Shades::Shares,
         panels: vec![(None, cells)],
         note: Some(format!(
-            "Shares in per cent; {} trials of each kind of ship. Known: on the list of effects, in another formula. \
-             Unknown: on no list. Located: its dependence and its times are found. Unexplained: the residual is more than \
+            "Shares in per cent; {} trials of each kind of ship. Listed: in another formula. Located: its dependence and its times are found. Unexplained: the residual is more than \
              noise. Disturbed: a random moment. Clean: noise alone. Alias: an effect that acts alike. Empty: no trial.",
             count_range(&counts)
         )),

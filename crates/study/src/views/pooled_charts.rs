@@ -14,6 +14,7 @@ use report::palette::{DASHED, DOTTED, INK};
 use report::{CurveOrigin, PlotCurve, symbol};
 
 use super::charts::{ErrorMeasure, comparable_methods, curve_origin, rms_title};
+use super::remarks::sd_half_width_percent;
 
 /// Minimum number of points of an axis for a map.
 const MIN_MAP_POINTS: usize = 3;
@@ -151,8 +152,7 @@ pub fn error_clouds(design: &Design, summary: &Summary) -> Vec<(usize, bool, Pan
         let mut note = format!(
             "Outlines: 95 % ellipses, solid for the trials, dotted for the bound. Points: {points} of {trials}. 95 % \
              intervals of the multiples of the bound: ±{:.1} %.",
-            // Of a standard deviation of that many normal errors.
-            100.0 * NORMAL_QUANTILE_95 / (2.0 * trials as f64).sqrt()
+            sd_half_width_percent(trials)
         );
         if !far.is_empty() {
             note += &format!(" Not drawn, because they scatter more than {FAR} times as far: {}.", far.join(", "));
@@ -296,13 +296,14 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRo
     };
     let names = rows.iter().map(|(name, _)| name.clone());
     let names = several.then(|| String::from(ALL_CELLS_ROW)).into_iter().chain(names).collect();
+    let truth = if design.is_measured() { "measured value" } else { "truth" };
     let inside = |line: &PredictionSummary| 100.0 * line.inside_share();
     let width = |line: &PredictionSummary| 100.0 * line.relative_to_truth(line.mean_interval_width());
     (!summary.predictions.is_empty()).then(|| NamedRows {
         names,
         columns: vec![
             column(
-                AxisSpec::new("90 % intervals that contain the truth [%]", TickRule::Percent),
+                AxisSpec::new(format!("90 % intervals that contain the {truth} [%]"), TickRule::Percent),
                 inside,
                 0,
                 vec![(String::from("90 %"), Pen { dash: DASHED, ..Pen::new(INK) }, 90.0)],

@@ -15,7 +15,7 @@ use campaign::summary::{RecordSummary, Summary, Tally, record_summaries};
 use document::names;
 use report::figures::{AxisSpec, NamedRows, Plot, RowItem, RowKind, RowPlace, RowsColumn, TickRule};
 use report::markdown::escaped_text;
-use report::number::{self, MISSING, significant};
+use report::number::{self, MISSING, counted, significant};
 use report::palette::CurveStyle;
 use report::{CurveOrigin, Page, PageFigure, PlacedFigures, Table, Theme};
 
@@ -148,7 +148,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         let median = line.validation_deg.filter(|_| items.len() >= MIN_SUMMARISED_VALUES);
         items.extend(median.map(|median| RowItem {
             number: Some(degrees_text(median.value)),
-            place: RowPlace::SameLine,
+            place: RowPlace::Below,
             ..RowItem::new(&method.label, RowKind::Mark(style, median.value, median.ci95))
         }));
         items.iter_mut().take(1).for_each(|item| item.place = RowPlace::Below);
@@ -159,7 +159,11 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         let is_judged = |row: &&StudyRow| (row.cell as usize, row.method) == (cell, lines[0].method);
         rows.iter().filter(is_judged).filter(|row| row.validation_rmse_deg.is_some()).count()
     };
-    let name = |&cell: &usize| format!("{} (n = {})", design.cells[cell].labels.join(", "), count(cell));
+    let fits = |cell: usize| lines.iter().find(|line| line.cell == cell).map_or(0, |line| line.fits as u64);
+    let name = |&cell: &usize| {
+        let labels = design.cells[cell].labels.join(", ");
+        format!("{labels} ({}, n = {})", counted(fits(cell), "fit"), count(cell))
+    };
     let names: Vec<String> = cells.iter().map(name).collect();
     let row = |&cell: &usize| lines.iter().filter(|line| line.cell == cell).flat_map(marks).collect();
     let column = RowsColumn {
@@ -173,7 +177,7 @@ fn judged(rows: &[StudyRow], lines: &[RecordSummary], design: &Design) -> PageFi
         names,
         columns: vec![column],
         note: Some(joined_remarks([
-            Some("Pale: single records. Dark: medians of five or more, with intervals for six fits or more."),
+            Some("n: predicted records. Pale: each of them. Dark: their median, with an interval from six fits on."),
             trace_remark(design),
         ])),
         ..NamedRows::default()

@@ -15,10 +15,11 @@ use super::key_figure;
 use super::outcomes;
 use super::page_files::KEY_FIGURE_STEM;
 use super::pooled_charts;
+use super::power_charts;
 use super::remarks;
 use super::trace_charts as traces;
 use super::tracing_table::has_several_traces;
-use campaign::design::Design;
+use campaign::design::{CellFacts, Design};
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
@@ -77,13 +78,15 @@ pub fn chosen_figures(
         figure.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
-                plot = key_figure::highlighted_chart(plot, &output.highlight);
+                let trials = design.cells.iter().map(CellFacts::trial_count).min().unwrap_or(0);
+                plot = key_figure::highlighted_chart(plot, &output.highlight, trials);
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             let mut key = PageFigure::new(KEY_FIGURE_STEM, finding, figure.caption.clone(), plot);
             match place {
                 FigurePlace::Chart | FigurePlace::AllTrials => {
-                    remarks::add_trials_remark(&mut key, &remarks::trials_remark(design));
+                    let remark = remarks::trials_remark(design, &key.plot);
+                    remarks::add_trials_remark(&mut key, &remark);
                 }
                 _ if design.is_measured() => {}
                 FigurePlace::Traces => remarks::add_trials_remark(
@@ -175,20 +178,20 @@ fn of_traces(stored: &StoredStudy, summary: &Summary) -> Vec<PageFigure> {
         );
         under_its_finding(stem, caption, Plot::Cells(map))
     };
-    let power = traces::detection_power_curves(&lines).map(|data| {
+    let power = power_charts::detection_power_curves(&lines).map(|data| {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood-ratio \
                        statistic 2 ln Λ against the best first-order response that it has on average, with 95 % \
                        intervals; of many kinds of trial those in a \
                        third of a decade together. Curves: power of a test by 2 ln Λ with one to three parameters at the \
                        threshold of the usual rule, a probability of 0.95, under white noise.";
-        let [named, trials] = traces::single_effect_counts(&lines);
+        let [named, trials] = power_charts::single_effect_counts(&lines);
         let finding = format!("The one missing effect is named in {named} of {trials} trials");
         PageFigure::new("power", finding, format!("{caption}{whose}"), data)
     });
-    let reliability = traces::reliability_diagram(&lines).map(|data| {
+    let reliability = power_charts::reliability_diagram(&lines).map(|data| {
         let caption = "How often an effect was there, over the probability that the trace gave it, with 95 % intervals: every \
                        effect on the list counts once in every trial of a ship whose effects are known.";
-        PageFigure::new("reliability", traces::present_effects_finding(&lines), format!("{caption}{whose}"), data)
+        PageFigure::new("reliability", power_charts::present_effects_finding(&lines), format!("{caption}{whose}"), data)
     });
     let rules = traces::trace_comparison_rows(design, &summary.tracing).map(|plot| {
         let caption = "Rules against each other: trials with a false name, of all trials, and trials that name what is missing \

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use report::number::{self, MISSING};
 use report::{Table, TableHead};
 
+use super::power_charts::calibration_bins;
 use super::tables::cell_head;
-use super::trace_charts::calibration_bins;
 use campaign::design::Design;
 use campaign::scenario::TRACE_ID;
 use campaign::statistics::{Statistic, wilson_share};
