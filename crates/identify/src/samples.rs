@@ -46,31 +46,29 @@ impl Samples {
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
         let first = trial.observed_rows().next().unwrap_or(0);
         let rows = trial.len() - first;
-        let (mut once, mut twice) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
-        once.push(0.0);
-        twice.push(0.0);
+        let (mut once, mut twice) = (vec![0.0; rows], vec![0.0; rows]);
         let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row_before >= first);
         let mut corner = corners.next();
+        let mut corner_row = corner.map_or(usize::MAX, |corner| corner.row_before);
         // Integration starts at the first observed row.
         let (mut integral, mut double) = (0.0, 0.0);
-        for row in first + 1..trial.len() {
-            let h = t[row] - t[row - 1];
-            match corner {
-                Some(&RudderCorner { row_before: before_row, time, rate_before: before, rate_after: after })
-                    if before_row + 1 == row =>
-                {
-                    let (start, u, change) = (delta[row - 1], t[row] - time, after - before);
-                    double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + u.powi(3) * change / 6.0;
-                    integral += h * start + 0.5 * (h * h * before + u * u * change);
-                    corner = corners.next();
-                }
-                _ => {
-                    double += h * integral + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
-                    integral += 0.5 * h * (delta[row - 1] + delta[row]);
-                }
+        let intervals = t[first..].windows(2).zip(delta[first..].windows(2));
+        let integrals = once[1..].iter_mut().zip(&mut twice[1..]);
+        for (row, ((ends, delta), (once, twice))) in (first..).zip(intervals.zip(integrals)) {
+            let h = ends[1] - ends[0];
+            if row == corner_row
+                && let Some(&RudderCorner { time, rate_before: before, rate_after: after, .. }) = corner
+            {
+                let (start, u, change) = (delta[0], ends[1] - time, after - before);
+                double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + u.powi(3) * change / 6.0;
+                integral += h * start + 0.5 * (h * h * before + u * u * change);
+                corner = corners.next();
+                corner_row = corner.map_or(usize::MAX, |corner| corner.row_before);
+            } else {
+                double += h * integral + h * h * (2.0 * delta[0] + delta[1]) / 6.0;
+                integral += 0.5 * h * (delta[0] + delta[1]);
             }
-            once.push(integral);
-            twice.push(double);
+            (*once, *twice) = (integral, double);
         }
         let time = t[first..].iter().map(|time| time - t[first]).collect();
         let mut columns = [time, psi[first..].to_vec(), delta[first..].to_vec(), once, twice];

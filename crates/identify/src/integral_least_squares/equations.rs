@@ -74,15 +74,19 @@ pub(super) fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     let beyond = |chord: f64, slope: f64| 2.0 * chord - slope;
     let mut slope = beyond(chord(0, 1), chord(0, 2));
     let mut total = 0.0;
-    let mut integral = Vec::with_capacity(time.len());
-    integral.push(total);
-    for k in 0..last {
-        let h = time[k + 1] - time[k];
-        let next = if k + 1 < last { chord(k, k + 2) } else { beyond(chord(k, last), slope) };
-        total -= h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next));
-        integral.push(total);
+    let mut integral = vec![0.0; time.len()];
+    let mut add = |times: &[f64], values: &[f64], next: f64, slope: f64, integral: &mut f64| {
+        let h = times[1] - times[0];
+        total -= h * (0.5 * (values[0] + values[1]) - value[0] + h / 12.0 * (slope - next));
+        *integral = total;
+    };
+    for ((t, values), integral) in time.windows(3).zip(value.windows(3)).zip(&mut integral[1..last]) {
+        let next = (values[2] - values[0]) / (t[2] - t[0]);
+        add(t, values, next, slope, integral);
         slope = next;
     }
+    let next = beyond(chord(last - 1, last), slope);
+    add(&time[last - 1..], &value[last - 1..], next, slope, &mut integral[last]);
     integral
 }
 
