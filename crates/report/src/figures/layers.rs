@@ -352,7 +352,7 @@ fn draw_layer(chart: &Chart, layer: &Layer, theme: &Theme, outside: &mut DataOut
                 chart.inside(x, y).map(ship).map_or(Ok(()), |ship| chart.canvas.draw_elements(ship))?;
             }
         }
-        LayerKind::Labels(_) => {}
+        LayerKind::Labels(..) => {}
     }
     Ok(0)
 }

@@ -168,8 +168,8 @@ pub enum LayerKind {
     Marks(Marks),
     /// Ships seen from above, with these headings in degrees.
     Ships(RGBColor, Vec<f64>),
-    /// Labels next to the points, in the colour of text.
-    Labels(Vec<String>),
+    /// Labels next to the points, and their colour.
+    Labels(Vec<String>, RGBColor),
 }
 
 /// One layer of a panel.
@@ -245,8 +245,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Line(pen) => pen.colour,
             LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) => *colour,
-            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) => *colour,
-            LayerKind::Labels(_) => crate::palette::INK,
+            LayerKind::Cloud(colour) | LayerKind::Ships(colour, _) | LayerKind::Labels(_, colour) => *colour,
             LayerKind::Marks(marks) => marks.style.colour,
             LayerKind::Record => crate::palette::RECORD,
         }
@@ -267,7 +266,7 @@ impl Layer {
                 LegendSymbol::LineAndMarker(pen.stroke(theme), *style)
             }
             LayerKind::Marks(Marks { style, .. }) => LegendSymbol::Marker(*style),
-            LayerKind::Labels(_) => return None,
+            LayerKind::Labels(..) => return None,
             LayerKind::Ships(..) if self.curve.finite_pairs().next().is_none() => return None,
             LayerKind::Ships(colour, _) => LegendSymbol::Hull(*colour),
         })

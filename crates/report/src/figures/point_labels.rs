@@ -6,7 +6,6 @@ use super::panels::{Layer, LayerKind};
 use crate::backend::PlotResult;
 use crate::canvas::{PagePoint, Rect, Stroke, TextLine};
 use crate::chart::Chart;
-use crate::palette::INK;
 use crate::theme::Theme;
 
 /// Distance that a label keeps from lines, in font sizes.
@@ -105,10 +104,10 @@ pub(super) fn draw(chart: &Chart, layers: &[Layer], theme: &Theme) -> PlotResult
     let mut obstacles = Obstacles::new(chart, layers);
     let frame = chart.rect;
     for layer in layers {
-        let LayerKind::Labels(labels) = &layer.kind else { continue };
+        let LayerKind::Labels(labels, colour) = &layer.kind else { continue };
         for ((x, y), label) in layer.curve.pairs().zip(labels) {
             let Some((x, y)) = chart.inside(x, y) else { continue };
-            let text = TextLine::new(label, theme.small_font, HPos::Center);
+            let text = TextLine { colour: *colour, ..TextLine::new(label, theme.small_font, HPos::Center) };
             let (width, height) = (text.width(), theme.small_font);
             let at = |[right, down]: [f64; 2]| {
                 let farther = 0.7 * (down - down.signum()) * height;
@@ -132,7 +131,7 @@ pub(super) fn draw(chart: &Chart, layers: &[Layer], theme: &Theme) -> PlotResult
             let middle = at(shift);
             if needs_leader(shift[1]) {
                 let ends = leader((x, y), middle, theme);
-                chart.canvas.line(&ends, Stroke { opacity: 0.6, ..Stroke::solid(INK, theme.thin) })?;
+                chart.canvas.line(&ends, Stroke { opacity: 0.6, ..Stroke::solid(*colour, theme.thin) })?;
             }
             chart.canvas.text_with_halo(middle, &text)?;
             obstacles.0.push(([(middle.0 - 0.5 * width, middle.1), (middle.0 + 0.5 * width, middle.1)], LABEL));

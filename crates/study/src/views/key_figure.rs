@@ -73,7 +73,7 @@ fn pale(mut layer: Layer) -> Layer {
         }
         LayerKind::Marks(marks) => (marks.style.colour, marks.intervals) = (UNHIGHLIGHTED, Vec::new()),
         LayerKind::Band(_, colour, _) | LayerKind::Dots(colour) | LayerKind::Cloud(colour) => *colour = UNHIGHLIGHTED,
-        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(_) => {}
+        LayerKind::Ships(..) | LayerKind::Record | LayerKind::Labels(..) => {}
     }
     layer.widening_at_most(ASIDE)
 }
@@ -175,7 +175,7 @@ fn point_values(layers: &[Layer], points: &[f64], unit: &str) -> Vec<Layer> {
             if written.contains(&text) {
                 continue;
             }
-            let labels = LayerKind::Labels(vec![text.1.clone()]);
+            let labels = LayerKind::Labels(vec![text.1.clone()], layer.colour());
             values.push(Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, labels));
             written.push(text);
         }
@@ -377,7 +377,7 @@ mod tests {
         let Plot::Panels(data) = highlighted_chart(data.into(), &highlight, 100) else { panic!() };
         let layers = &data.groups[0].panels[0].layers;
         let labels = layers.iter().filter_map(|layer| match &layer.kind {
-            LayerKind::Labels(labels) => Some((layer.curve.x.clone(), labels.clone())),
+            LayerKind::Labels(labels, _) => Some((layer.curve.x.clone(), labels.clone())),
             _ => None,
         });
         assert_eq!(

@@ -73,7 +73,7 @@ pub fn outcome_map(design: &Design, lines: &[TraceSummary]) -> Option<(String, C
         shades: Shades::Shares,
         panels: vec![(None, cells)],
         note: Some(format!(
-            "Shares in per cent; {} trials of each kind of ship. Listed: in another formula. Located: its dependence and its times are found. Unexplained: the residual is more than \
+            "Shares in per cent; {} trials of each kind of ship. Listed effects have another formula than on the list. Located: its dependence and its times are found. Unexplained: the residual is more than \
              noise. Disturbed: a random moment. Clean: noise alone. Alias: an effect that acts alike. Empty: no trial.",
             count_range(&counts)
         )),

@@ -312,7 +312,7 @@ pub fn prediction_coverage(design: &Design, summary: &Summary) -> Option<NamedRo
         ],
         note: Some(format!(
             "Over the predicted overshoots, times and turns. Marks: mean share, median width. Bands: from the worst to the \
-             best share, the middle half of the widths.{}",
+             best quantity, the middle half of the widths.{}",
             certainty(design)
         )),
         ..NamedRows::default()

@@ -116,7 +116,7 @@ fn ideal_test(largest: f64) -> Vec<Layer> {
     let edges = curves.clone().map(|curve| Layer::line("", curve, Pen { opacity: 0.4, ..Pen::new(INK).width(0.5) }));
     let place = curves[0].pairs().find(|(_, share)| *share > LABELLED_POWER);
     let label = place.map(|(x, y)| {
-        let text = LayerKind::Labels(vec![String::from("ideal test")]);
+        let text = LayerKind::Labels(vec![String::from("ideal test")], INK);
         Layer::new("", PlotCurve { x: vec![x], y: vec![y] }, text)
     });
     [Layer::band("", curves, INK, 0.2)].into_iter().chain(edges).chain(label).collect()
