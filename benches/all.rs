@@ -9,6 +9,8 @@ use kempf_benches::works;
 const FEW_SAMPLES: usize = 10;
 
 fn main() {
+    // As the program does.
+    estimation::memory::keep_freed_memory();
     let mut criterion = Criterion::default().configure_from_args();
     let is_measured = std::env::args().any(|argument| argument == "--bench");
     for group in works::all() {

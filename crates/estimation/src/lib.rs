@@ -15,6 +15,7 @@
 //! | mixtures of normal distributions, and ratios over them | [`mixture`] |
 //! | the evidence of every subset of terms | [`subsets`] |
 //! | whiteness and spectrum of a residual | [`residuals`] |
+//! | work space without page faults | [`memory`](memory::keep_freed_memory) |
 
 pub mod column;
 pub mod covariance;
@@ -22,6 +23,7 @@ pub mod kalman;
 pub mod lanes;
 pub mod least_squares;
 pub mod levenberg_marquardt;
+pub mod memory;
 pub mod minimum;
 pub mod mixture;
 pub mod number;

@@ -3,5 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    estimation::memory::keep_freed_memory();
     study::cli::main()
 }

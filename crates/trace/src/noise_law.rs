@@ -55,7 +55,9 @@ impl RecordWhitening {
     pub fn apply(&self, record: usize, columns: &mut [&mut Vec<f64>]) {
         self.whiteners[record].apply(columns);
         let scale = self.scale[record];
-        columns.iter_mut().flat_map(|column| column.iter_mut()).for_each(|x| *x *= scale);
+        for column in columns {
+            column.iter_mut().for_each(|x| *x *= scale);
+        }
     }
 
     /// Applies the transpose of [`apply`](Self::apply) to a column of one record.

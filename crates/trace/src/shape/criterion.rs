@@ -78,8 +78,10 @@ pub struct WhitenedStructure {
 /// Products of appended columns with the columns of a structure, with each other, and with its residual.
 #[derive(Debug, Clone)]
 pub struct GramProducts {
-    /// Products with the columns of the structure, by appended column.
+    /// Rows of the factor for the columns of the structure, by appended column; further products may follow.
     pub cross: Vec<Vec<f64>>,
+    /// Number of entries of every row that belong to the factor.
+    factored: usize,
     /// Products with each other.
     gram: Vec<Vec<f64>>,
     /// Products with the residual.
@@ -126,7 +128,7 @@ impl WhitenedStructure {
             gradient[k] -= precision * offset;
             square += precision * offset * offset;
         }
-        let factor = factor(&matrix, &[])?;
+        let factor = factor(&matrix, &[], 0)?;
         let solution = solve(&factor, &gradient, &[]);
         let rows = structure.rows() as f64;
         let (freedom, log_n) = (rows - structure.integrated as f64, rows.ln());
@@ -192,14 +194,17 @@ impl WhitenedStructure {
 
     /// Products of whitened columns with the structure, with each other, and with the residual.
     pub fn products(&self, columns: &[HeadingColumn]) -> GramProducts {
-        let count = self.factor.len();
-        let mut all = GramProducts { cross: Vec::new(), gram: Vec::new(), gradient: Vec::new() };
+        let factored = self.factor.len();
+        let mut all = GramProducts { cross: Vec::new(), factored, gram: Vec::new(), gradient: Vec::new() };
         for (k, column) in columns.iter().enumerate() {
-            let (mut cross, mut gradient) = (vec![0.0; count], 0.0);
+            let (mut cross, mut gradient) = (vec![0.0; factored], 0.0);
             for (record, values) in column {
                 let block = &self.blocks[*record];
                 block.columns.iter().for_each(|(unknown, column)| cross[*unknown] += dot(column, values));
                 gradient += dot(&block.residual, values);
+            }
+            for (j, row) in self.factor.iter().enumerate() {
+                cross[j] = (cross[j] - dot(&cross[..j], &row[..j])) / row[j];
             }
             all.cross.push(cross);
             all.gradient.push(gradient);
@@ -217,7 +222,7 @@ impl WhitenedStructure {
     /// Rows of factor and solution for appended columns; `None` if they are linearly dependent.
     fn extension(&self, products: &GramProducts) -> Option<Extension> {
         let rows = products.cross.iter().zip(&products.gram).map(|(cross, gram)| [cross.as_slice(), gram].concat());
-        let factor = factor(&rows.collect::<Vec<_>>(), &self.factor)?;
+        let factor = factor(&rows.collect::<Vec<_>>(), &self.factor, products.factored)?;
         let solution = solve(&factor, &products.gradient, &self.solution);
         Some(Extension { factor, solution })
     }
@@ -255,13 +260,15 @@ impl WhitenedStructure {
     }
 }
 
-/// Rows of the lower Cholesky factor of a symmetric matrix after the rows `leading`; `None` if it is singular.
-fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+/// Rows of the lower Cholesky factor of a symmetric matrix after the rows `leading`; the first `factored` entries of
+/// every row are of the factor already. `None` if it is singular.
+fn factor(matrix: &[Vec<f64>], leading: &[Vec<f64>], factored: usize) -> Option<Vec<Vec<f64>>> {
     let mut rows: Vec<Vec<f64>> = Vec::with_capacity(matrix.len());
     for (k, source) in matrix.iter().enumerate() {
         let here = leading.len() + k;
         let mut row = vec![0.0; here + 1];
-        for j in 0..here {
+        row[..factored].copy_from_slice(&source[..factored]);
+        for j in factored..here {
             let other = if j < leading.len() { &leading[j] } else { &rows[j - leading.len()] };
             row[j] = (source[j] - dot(&row[..j], &other[..j])) / other[j];
         }

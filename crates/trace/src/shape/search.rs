@@ -121,9 +121,15 @@ impl ShapeSearch<'_> {
         requested.into_par_iter().filter_map(candidate).collect()
     }
 
-    /// Columns of each candidate, whitened record by record under the law of index `law`.
+    /// Columns of each candidate, whitened under the law of index `law`.
     fn white(&self, law: usize, candidates: &[&ShapeCandidate]) -> Vec<Vec<HeadingColumn>> {
-        let mut all: Vec<Vec<HeadingColumn>> = candidates.iter().map(|candidate| candidate.columns.clone()).collect();
+        let mut all = candidates.iter().map(|candidate| candidate.columns.clone()).collect::<Vec<_>>();
+        self.whiten(law, &mut all);
+        all
+    }
+
+    /// Whitens columns of candidates record by record under the law of index `law`.
+    fn whiten(&self, law: usize, all: &mut [Vec<HeadingColumn>]) {
         let columns = || all.iter().flatten().flatten();
         let mut records: Vec<usize> = columns().map(|(record, _)| *record).collect();
         records.sort_unstable();
@@ -132,7 +138,6 @@ impl ShapeSearch<'_> {
             let pieces = all.iter_mut().flatten().flatten().filter(|(number, _)| *number == record);
             self.whitening[law].apply(record, &mut pieces.map(|(_, values)| values).collect::<Vec<_>>());
         }
-        all
     }
 
     /// Structure with shapes appended under every law; `None` where its columns are dependent.
@@ -158,12 +163,16 @@ impl ShapeSearch<'_> {
     /// Products of all candidates with the structure, under some laws.
     fn products(&self, laws: &[usize], library: &[Arc<ShapeCandidate>]) -> Vec<Vec<GramProducts>> {
         let products = |chunk: &[Arc<ShapeCandidate>]| {
-            let candidates: Vec<&ShapeCandidate> = chunk.iter().map(Arc::as_ref).collect();
+            let mut white: Vec<Vec<HeadingColumn>> = chunk.iter().map(|candidate| candidate.columns.clone()).collect();
             let mut all = vec![Vec::with_capacity(laws.len()); chunk.len()];
             for &law in laws {
                 let Some(structure) = &self.structure[law] else { continue };
-                let white = self.white(law, &candidates);
-                all.iter_mut().zip(white).for_each(|(products, columns)| products.push(structure.products(&columns)));
+                let raw = chunk.iter().flat_map(|candidate| &candidate.columns).flatten();
+                for ((_, white), (_, raw)) in white.iter_mut().flatten().flatten().zip(raw) {
+                    white.copy_from_slice(raw);
+                }
+                self.whiten(law, &mut white);
+                all.iter_mut().zip(&white).for_each(|(products, columns)| products.push(structure.products(columns)));
             }
             all
         };
