@@ -10,7 +10,7 @@ const LONGEST_FUNCTION: usize = 60;
 /// What the house has reached. Whoever raises a number says why in the same commit; whoever can lowers it.
 const REACHED: Size = Size {
     code: 71_100,
-    tests: 31_970,
+    tests: 32_010,
     long_functions: 0,
     shared_types: 7,
     packages: 298,

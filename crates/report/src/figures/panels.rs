@@ -394,6 +394,30 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_names_of_a_plot_are_those_of_layers_panels_rows_and_items() {
+        use crate::figures::{CellMap, NamedRows, Plot, RowItem, RowsColumn, Shades};
+        let labels = Layer::new("", PlotCurve::default(), LayerKind::Labels(Vec::new(), HEADING));
+        assert_eq!(labels.colour(), HEADING);
+        let line = Layer::line("srivc", PlotCurve::default(), Pen::pale());
+        let panel = LayeredPanel { head: Some("calm".into()), layers: vec![labels, line], ..LayeredPanel::default() };
+        let panels = Panels::new(PanelGroup { panels: vec![panel], ..PanelGroup::default() });
+        assert_eq!(Plot::from(panels).series_names(), ["srivc", "calm"]);
+        let item = RowItem::new("trace", crate::figures::RowKind::Limit(1.0));
+        let columns = vec![RowsColumn { rows: vec![vec![item]], ..RowsColumn::default() }];
+        let rows = NamedRows { names: vec!["gusts".into()], columns, ..NamedRows::default() };
+        assert_eq!(Plot::from(rows).series_names(), ["trace", "gusts"]);
+        let map = CellMap {
+            axis_titles: Default::default(),
+            columns: Vec::new(),
+            rows: Vec::new(),
+            shades: Shades::Shares,
+            panels: vec![(Some("map".into()), Vec::new()), (None, Vec::new())],
+            note: None,
+        };
+        assert_eq!(Plot::from(map).series_names(), ["map"]);
+    }
+
+    #[test]
     fn an_axis_of_names_has_one_unit_each() {
         let (axis, _) = AxisSpec::of_names(vec!["35/5".into(), "5/1".into()]).axis(&Extents::default(), 0.1);
         assert_eq!((axis.labels().collect::<Vec<_>>(), axis.ends()), (vec!["35/5", "5/1"], (-0.5, 1.5)));

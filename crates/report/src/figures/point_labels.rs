@@ -155,6 +155,18 @@ mod tests {
     }
 
     #[test]
+    fn a_leader_ends_at_mark_and_text_and_costs_the_lines_that_it_crosses() {
+        let theme = Theme::screen();
+        let (mark, half_text) = (1.2 * theme.marker, 0.5 * theme.small_font);
+        assert_eq!(leader((10.0, 50.0), (30.0, 20.0), &theme), [(10.0, 50.0 - mark), (30.0, 20.0 + half_text)]);
+        assert_eq!(leader((10.0, 50.0), (30.0, 90.0), &theme), [(10.0, 50.0 + mark), (30.0, 90.0 - half_text)]);
+        let across = |y: f64| [(0.0, y), (4.0, y)];
+        let obstacles = Obstacles(vec![(across(1.0), 1.0), (across(2.0), 0.45), (across(9.0), 1.0)]);
+        assert!((obstacles.crossing_cost([(2.0, 0.0), (2.0, 3.0)]) - 1.45).abs() < 1e-12);
+        assert_eq!(obstacles.crossing_cost([(2.0, 3.0), (2.0, 4.0)]), 0.0);
+    }
+
+    #[test]
     fn segments_that_only_touch_do_not_cross() {
         assert!(intersects([(0.0, 0.0), (2.0, 2.0)], [(0.0, 2.0), (2.0, 0.0)]));
         assert!(!intersects([(0.0, 0.0), (1.0, 1.0)], [(1.0, 1.0), (2.0, 0.0)]));
