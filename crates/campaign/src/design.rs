@@ -93,6 +93,11 @@ fn trial_records(set: &RecordSet) -> Vec<TrialRecords> {
 }
 
 impl Design {
+    /// Minimum number of trials over the cells; 0 without cells.
+    pub fn min_trial_count(&self) -> u64 {
+        self.cells.iter().map(CellFacts::trial_count).min().unwrap_or(0)
+    }
+
     /// Design of a scenario, without stored trials and without bounds.
     pub fn from_scenario(scenario: &Scenario) -> Self {
         let predicts = scenario.predictions.is_some();

@@ -49,21 +49,19 @@ impl Samples {
         let (mut once, mut twice) = (vec![0.0; rows], vec![0.0; rows]);
         let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row_before >= first);
         let mut corner = corners.next();
-        let mut corner_row = corner.map_or(usize::MAX, |corner| corner.row_before);
         // Integration starts at the first observed row.
         let (mut integral, mut double) = (0.0, 0.0);
         let intervals = t[first..].windows(2).zip(delta[first..].windows(2));
         let integrals = once[1..].iter_mut().zip(&mut twice[1..]);
         for (row, ((ends, delta), (once, twice))) in (first..).zip(intervals.zip(integrals)) {
             let h = ends[1] - ends[0];
-            if row == corner_row
-                && let Some(&RudderCorner { time, rate_before: before, rate_after: after, .. }) = corner
+            if let Some(&RudderCorner { time, rate_before: before, rate_after: after, .. }) =
+                corner.filter(|corner| corner.row_before == row)
             {
                 let (start, u, change) = (delta[0], ends[1] - time, after - before);
                 double += h * integral + h * h * (3.0 * start + h * before) / 6.0 + u.powi(3) * change / 6.0;
                 integral += h * start + 0.5 * (h * h * before + u * u * change);
                 corner = corners.next();
-                corner_row = corner.map_or(usize::MAX, |corner| corner.row_before);
             } else {
                 double += h * integral + h * h * (2.0 * delta[0] + delta[1]) / 6.0;
                 integral += 0.5 * h * (delta[0] + delta[1]);

@@ -114,7 +114,7 @@ pub const MODEL_BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
 pub const DIMENSION_LINE: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
     /// ●
     Circle,

@@ -1,7 +1,5 @@
 //! Drawing of [`NamedRows`]: rows over their axes, with their numbers at the right end.
 
-use std::collections::HashSet;
-
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color as _, RGBColor};
 
@@ -241,6 +239,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_dist
         }
     }
     let widths = number_widths(column, theme);
+    let has_markers = has_several_markers(column);
     let (left, right, bottom) = (chart.data_right(), chart.rect.right(), chart.rect.bottom());
     if left < right {
         let corners = [(left, chart.rect.y), (right, chart.rect.y), (right, bottom), (left, bottom)];
@@ -253,7 +252,7 @@ fn draw(chart: &Chart, theme: &Theme, column: &RowsColumn, pitch: f64, line_dist
         for ((number, style), width) in numbers(items, theme).iter().rev().zip(widths.iter().rev()) {
             chart.canvas.text_with_halo((right, y), number)?;
             right -= width;
-            if let Some(style) = style.filter(|_| has_several_markers(column)) {
+            if let Some(style) = style.filter(|_| has_markers) {
                 let place = page_units((right + theme.small_font, y));
                 chart.canvas.draw_elements(marker(place, 0.8 * theme.marker, style))?;
             }
@@ -356,7 +355,11 @@ fn numbers<'a>(items: &'a [RowItem], theme: &Theme) -> Vec<(TextLine, Option<&'a
 /// `true` if marks of a row differ in shape, so that a number needs its mark.
 fn has_several_markers(column: &RowsColumn) -> bool {
     let marker = |item: &RowItem| if let RowKind::Mark(style, ..) = &item.kind { Some(style.marker) } else { None };
-    column.rows.iter().any(|row| row.iter().filter_map(marker).collect::<HashSet<_>>().len() > 1)
+    column.rows.iter().any(|row| {
+        let mut markers = row.iter().filter_map(marker);
+        let first = markers.next();
+        markers.any(|other| Some(other) != first)
+    })
 }
 
 /// Widths of the columns of numbers at the right end of the rows, points; the last number of every row is in the last
@@ -411,40 +414,4 @@ fn violin(chart: &Chart, theme: &Theme, item: &RowItem, y: f64, density: &[(f64,
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::palette::{Marker, UNHIGHLIGHTED};
-
-    /// Row of marks of these shapes, each with a number.
-    fn numbered(markers: &[Marker]) -> RowsColumn {
-        let style = |marker| CurveStyle { colour: UNHIGHLIGHTED, marker, ..CurveOrigin::Truth.style() };
-        let item =
-            |&marker| RowItem { number: Some("1.0 %".into()), ..RowItem::mark_below("", style(marker), 1.0, None) };
-        RowsColumn { rows: vec![markers.iter().map(item).collect()], ..RowsColumn::default() }
-    }
-
-    #[test]
-    fn numbers_are_dark_and_have_room_for_their_marks_where_these_differ() {
-        let theme = Theme::screen();
-        let widths = |markers: &[Marker]| number_widths(&numbered(markers), &theme);
-        let [single, alike, both] =
-            [&[Marker::Circle][..], &[Marker::Circle; 2], &[Marker::Circle, Marker::Star]].map(widths);
-        assert_eq!(alike, [single[0]; 2]);
-        assert_eq!(both, [single[0] + theme.small_font; 2]);
-        let column = numbered(&[Marker::Star]);
-        let written = numbers(&column.rows[0], &theme);
-        assert!(written.iter().all(|(number, style)| number.colour == INK && style.is_some()));
-    }
-
-    #[test]
-    fn two_ranges_of_a_row_do_not_overlap() {
-        let theme = Theme::screen();
-        let range = || RowItem { place: RowPlace::Below, ..RowItem::new("", RowKind::WideInterval(INK, [0.0, 1.0])) };
-        let distance = |count: usize| {
-            let column = RowsColumn { rows: vec![vec![range(); count]], ..RowsColumn::default() };
-            line_distance(&NamedRows { columns: vec![column], ..NamedRows::default() }, &theme)
-        };
-        let height = range_stroke(INK, &theme).width;
-        assert!(distance(2) > height && distance(1) < distance(2), "{} {height}", distance(2));
-    }
-}
+mod tests;

@@ -1,7 +1,7 @@
 //! Maps over two axes, and distributions of errors: of all trials of a study with one cell, or of cells whose detail
 //! was requested.
 
-use campaign::design::{CellFacts, Design};
+use campaign::design::Design;
 use campaign::statistics::{NORMAL_QUANTILE_95, Statistic, distinct, grouped};
 use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use estimation::statistics::median;
@@ -255,7 +255,7 @@ fn prediction_items(origin: &CurveOrigin, value: f64, ends: [f64; 2]) -> Vec<Row
 /// Sentence on the maximum half width over the cells of the 95 % interval of a share of 90 %. Characteristics of a
 /// trial may be correlated, so each trial counts once. Measured records are not independent and have no interval.
 fn certainty(design: &Design) -> String {
-    let trials = design.cells.iter().map(CellFacts::trial_count).min().unwrap_or(0);
+    let trials = design.min_trial_count();
     if design.is_measured() {
         return String::from(" Records of one ship are not independent: no intervals.");
     }

@@ -19,7 +19,7 @@ use super::power_charts;
 use super::remarks;
 use super::trace_charts as traces;
 use super::tracing_table::has_several_traces;
-use campaign::design::{CellFacts, Design};
+use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::store::StoredStudy;
 use campaign::summary::{Summary, TraceSummary};
@@ -78,8 +78,7 @@ pub fn chosen_figures(
         figure.map(|(place, figure)| {
             let mut plot = figure.plot.clone();
             if matches!(place, FigurePlace::Chart | FigurePlace::AllTrials | FigurePlace::Traces) {
-                let trials = design.cells.iter().map(CellFacts::trial_count).min().unwrap_or(0);
-                plot = key_figure::highlighted_chart(plot, &output.highlight, trials);
+                plot = key_figure::highlighted_chart(plot, &output.highlight, design.min_trial_count());
             }
             let finding = output.title.clone().unwrap_or_else(|| figure.finding.clone());
             let mut key = PageFigure::new(KEY_FIGURE_STEM, finding, figure.caption.clone(), plot);
